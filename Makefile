@@ -1,0 +1,22 @@
+# Each target is complete by itself: it sets up its own environment first. PYTHON chooses the interpreter.
+PYTHON ?= python3
+ENVIRONMENT := .venv
+RUN := $(ENVIRONMENT)/bin/python
+READY := $(ENVIRONMENT)/ready
+
+.PHONY: generate check test
+
+generate: $(READY)
+	$(RUN) -m derive generate
+
+check: $(READY)
+	$(RUN) -m derive check
+
+test: $(READY)
+	$(RUN) -m pytest -n 2
+
+$(READY): pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit("Softkin needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'
+	$(PYTHON) -m venv $(ENVIRONMENT)
+	$(RUN) -m pip install --quiet --editable '.[test]'
+	touch $@

@@ -1,0 +1,96 @@
+"""Which two-root step is which branch: the sign of its slope must agree with the description's indicator."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from derive.algebra import reduce_units
+from derive.closure import angles_of
+from derive.forward import Forward, derivation_at_axes, named_trigonometry
+from derive.inverse import Inverse
+from derive.mechanism import Branch, DescriptionError, Mechanism
+from derive.passes import assemble
+from derive.problem import Slope
+from derive.program import Let, Output, Require, Statement, Status, real
+from derive.run import run
+from derive.sampling import sample_axes, sample_machine
+
+_SAMPLES = 64
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A branch, the step that decides it, and whether the step's sign is the branch's (+1) or its opposite (-1)."""
+
+    branch: Branch
+    slope: Slope
+    orientation: int
+
+    @property
+    def sigma(self) -> sp.Symbol:
+        """The branch's own sign: +1 is byte 1."""
+        return real(f"sigma_{self.branch.name}")
+
+    def margin(self, mechanism: Mechanism) -> sp.Expr:
+        """The signed, scaled slope: positive is byte 1."""
+        value = sp.cancel(self.orientation * self.slope.value / self.slope.scale)
+        return reduce_units(value, angles_of(mechanism)) if value.is_polynomial() else value
+
+
+def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool = False) -> tuple[Assignment, ...]:
+    """Find the step of every branch, or refuse.
+
+    `optional_zero` compares a machine without its optional lengths: the steps of the offset problem mean the
+    branches of the machine only where the point is the flange itself.
+    """
+    slopes = inverse.derivation.slopes
+    signs, indicators = _signs(mechanism, inverse, forward, optional_zero)
+    found: list[Assignment] = []
+    for branch, indicator in zip(mechanism.branches, indicators, strict=True):
+        agreeing = [(s, o) for s, row in zip(slopes, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)]
+        if len(agreeing) != 1:
+            raise DescriptionError(f"branch {branch.name!r}: its indicator agrees with {len(agreeing)} steps, not one")
+        found.append(Assignment(branch, *agreeing[0]))
+    unnamed = [s for s in slopes if s not in [a.slope for a in found]]
+    if unnamed:
+        names = ", ".join(str(s.sigma).removeprefix("sigma_") for s in unnamed)
+        raise DescriptionError(f"no branch names the two solutions for {names}")
+    return tuple(found)
+
+
+def _signs(
+    mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool
+) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    lets, indicators = named_trigonometry(mechanism, [b.indicator * b.signs[0] for b in mechanism.branches])
+    slopes = [s.value for s in inverse.derivation.slopes]
+    named = [Let(real(f"sign_{k}"), v) for k, v in enumerate([*slopes, *indicators])]
+    statements = (*derivation_at_axes(mechanism, inverse, forward), *lets, *named)
+    program = assemble("signs", statements, [Output(n.name.name, n.name) for n in named])
+    machine = sample_machine(mechanism, 21, optional_zero)
+    samples = {**machine, **sample_axes(mechanism, machine, _SAMPLES, 22)}
+    samples.update({f"point_{c}": np.asarray(0.0) for c in "xyz"})
+    values, status = run(program, samples)
+    good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
+    rows = [np.sign(np.broadcast_to(values[n.name.name], (_SAMPLES,))[good]) for n in named]
+    return rows[: len(slopes)], rows[len(slopes) :]
+
+
+def with_branch_signs(statements: Sequence[Statement], assignments: Sequence[Assignment]) -> tuple[Statement, ...]:
+    """The derivation with every sign replaced by that of its branch."""
+    table = {a.slope.sigma: a.orientation * a.sigma for a in assignments}
+    renamed: list[Statement] = []
+    for s in statements:
+        if isinstance(s, Require):
+            renamed.append(Require(s.condition.xreplace(table), s.otherwise, s.note))
+        else:
+            renamed.append(Let(s.name, s.value.xreplace(table), s.note))
+    return tuple(renamed)
+
+
+def margin_lets(mechanism: Mechanism, assignments: Sequence[Assignment]) -> tuple[Let, ...]:
+    """`branch_<name>`: the signed margin of every branch."""
+    return tuple(Let(real(f"branch_{a.branch.name}"), a.margin(mechanism)) for a in assignments)

@@ -1,0 +1,170 @@
+"""From a description to all programs of a mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.branching import Assignment, assign, margin_lets, with_branch_signs
+from derive.closure import flange_rotation, heading_of
+from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program
+from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
+from derive.forward import (
+    Forward,
+    derivation_at_axes,
+    forward_program,
+    named_trigonometry,
+    orientation_program,
+    pose_at_axes,
+)
+from derive.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
+from derive.kinematics import Freedom, Kinematics, Margin
+from derive.mechanism import DescriptionError, Mechanism, Turning
+from derive.parameters import machine_parameters, setup_program
+from derive.passes import assemble, hoist
+from derive.pose import pose_of
+from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real
+
+
+def build(mechanism: Mechanism) -> Kinematics:
+    """Derive everything. Raises `Unsolved` or `DescriptionError` where the description does not allow it."""
+    forward = pose_at_axes(mechanism)
+    inverse = solve_pose(mechanism)
+    assignments = assign(mechanism, inverse, forward)
+    at_axes = derivation_at_axes(mechanism, inverse, forward)
+    margins = margin_lets(mechanism, assignments)
+    jacobian = jacobian_program(mechanism, forward)
+    factors = [*(Factor(a.branch.name, a.margin(mechanism)) for a in assignments), *_measures(inverse)]
+    singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian)
+    statements = with_branch_signs(inverse.derivation.statements, assignments)
+    forward_only = replace(forward, statements=at_axes)
+    programs = [
+        forward_program(mechanism, forward_only, margins),
+        orientation_program(forward),
+        inverse_program("branch", mechanism, inverse, statements),
+        _limits_program(mechanism),
+        singularity,
+        jacobian,
+        _image_program(mechanism),
+    ]
+    if mechanism.task.turning is not Turning.NONE:
+        programs.append(_projection_program(mechanism))
+    if mechanism.offset_interface:
+        programs += _offset_programs(mechanism, forward)
+    return _finished(mechanism, programs, kept)
+
+
+def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...]) -> Kinematics:
+    """Everything together, with what depends on parameters alone moved into the setup."""
+    parameters = machine_parameters(mechanism)
+    constants = {o.name for o in setup_program(mechanism, parameters, ()).outputs}
+    lowered, hoisted = hoist(programs, constants)
+    setup = setup_program(mechanism, parameters, hoisted)
+    finished = {program.name: program for program in lowered}
+    for program in lowered:
+        _check_inputs(mechanism, program, {o.name for o in setup.outputs})
+    return Kinematics(
+        mechanism=mechanism,
+        parameters=parameters,
+        setup=setup,
+        forward=finished["forward"],
+        orientation=finished["orientation"],
+        branch=finished["branch"],
+        limits=finished["limits"],
+        singularity=finished["singularity"],
+        jacobian=finished["jacobian"],
+        image=finished["image"],
+        projection=finished.get("projection"),
+        offset_branch=finished.get("offset_branch"),
+        offset_configuration=finished.get("offset_configuration"),
+        rows=jacobian_rows(mechanism),
+        margins=margins,
+        freedom=_freedom(mechanism),
+        reads_rotation=mechanism.task.turning is not Turning.NONE,
+    )
+
+
+def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -> None:
+    """A free name that is nobody's input is a mistake of the derivation: find it here, not in a generated file."""
+    allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
+    allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
+    allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
+    strangers = [s.name for s in program.inputs if s.name not in allowed]
+    if strangers:
+        raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
+
+
+def _measures(inverse: Inverse) -> list[Factor]:
+    return [Factor(f"free_{m.angle.name}", m.value / m.scale) for m in inverse.derivation.measures]
+
+
+def _offset_programs(mechanism: Mechanism, forward: Forward) -> list[Program]:
+    inverse = solve_offset(mechanism)
+    assignments = assign(mechanism, inverse, forward, optional_zero=True)
+    statements = with_branch_signs(inverse.derivation.statements, assignments)
+    return [
+        inverse_program("offset_branch", mechanism, inverse, statements),
+        _offset_configuration(mechanism, inverse, forward, assignments),
+    ]
+
+
+def _offset_configuration(
+    mechanism: Mechanism, inverse: Inverse, forward: Forward, assignments: tuple[Assignment, ...]
+) -> Program:
+    margins = margin_lets(mechanism, assignments)
+    outputs = [Output(m.name.name, m.name) for m in margins]
+    draft = assemble("offset_configuration", (*derivation_at_axes(mechanism, inverse, forward), *margins), outputs)
+    points = [s for s in draft.inputs if s.name.startswith("point_")]
+    return assemble("offset_configuration", (*finite(points), *draft.body), draft.outputs)
+
+
+def _limits_program(mechanism: Mechanism) -> Program:
+    """Every axis, then every quantity with limits of its own, inside its widened limits."""
+    body: list[Statement] = [_inside(j.key, j.axis, f"limits of {j.name}") for j in mechanism.joints]
+    if mechanism.limited:
+        body += joint_lets(mechanism)
+    for quantity in mechanism.limited:
+        lets, (value,) = named_trigonometry(mechanism, [quantity.value / (DEGREE if quantity.is_angle else 1)])
+        name = real(f"value_{quantity.name}")
+        body += [*lets, Let(name, value, quantity.meaning), _inside(quantity.name, name, f"limits of {quantity.meaning}")]
+    return assemble("limits", body, [])
+
+
+def _inside(key: str, value: sp.Symbol, note: str) -> Require:
+    condition = sp.And(sp.Ge(value, real(f"lowest_{key}")), sp.Le(value, real(f"highest_{key}")))
+    return Require(condition, Status.UNREACHABLE, note)
+
+
+def _projection_program(mechanism: Mechanism) -> Program:
+    """The nearest rotation that the flange can have."""
+    assert mechanism.chain is not None
+    cos_heading, sin_heading = real("cos_heading"), real("sin_heading")
+    turned = sp.Matrix([[cos_heading, -sin_heading, 0], [sin_heading, cos_heading, 0], [0, 0, 1]])
+    rotation = turned * flange_rotation(mechanism.chain)
+    outputs = [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, rotation, strict=True)]
+    return assemble("projection", (*finite(ROTATION_ENTRIES), *is_rotation(), *heading_lets(mechanism)), outputs)
+
+
+def _freedom(mechanism: Mechanism) -> Freedom:
+    """Stated closures keep their orientation; a chain's rotation may turn about z with the joints."""
+    if mechanism.chain is None:
+        return Freedom.ZERO
+    joints = {j.symbol for j in mechanism.joints}
+    return Freedom.ONE if pose_of(mechanism.chain).rotation.free_symbols & joints else Freedom.ZERO
+
+
+def _image_program(mechanism: Mechanism) -> Program:
+    """All orientations of the flange: one of them, and the axis about which it turns, in both frames."""
+    zero = sp.eye(3)
+    axis = sp.Matrix([0, 0, 1])
+    if mechanism.chain is not None:
+        zero = sp.Matrix(flange_rotation(mechanism.chain))
+        if _freedom(mechanism) is Freedom.ONE:
+            heading_of(mechanism.chain)  # refuses a chain whose rotation is not one turn about z
+    moving = zero.T * axis
+    outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, zero, strict=True)]
+    outputs += [Output(f"rot_{c}", v) for c, v in zip("xyz", axis, strict=True)]
+    outputs += [Output(f"u_{c}", v) for c, v in zip("xyz", moving, strict=True)]
+    return assemble("image", (), outputs)

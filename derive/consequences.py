@@ -1,0 +1,70 @@
+"""General consequences of equations, in tiers: each is tried only when the previous gives no subproblem.
+
+* difference: an unknown length that two equations hold affinely is eliminated between them;
+* squares: the sum of the squares of two equations, known parts on the other side, loses the angle that
+  turns both (the law of cosines).
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import sympy as sp
+
+from derive.algebra import linear_coefficients, reduce_units, split_known
+from derive.problem import Equation, Problem
+from derive.program import Let
+from derive.subproblems.naming import Naming
+
+
+def differences(problem: Problem) -> tuple[Equation, ...]:
+    """Equations from which one unknown length has been eliminated."""
+    found: list[Equation] = []
+    for first, second in combinations(problem.equations, 2):
+        for unknown in problem.lengths:
+            rows = [linear_coefficients(e.expression, (unknown,)) for e in (first, second)]
+            if rows[0] is None or rows[1] is None:
+                continue
+            a, b = rows[0][0][0], rows[1][0][0]
+            if a == 0 or b == 0 or problem.unknowns_of(a) or problem.unknowns_of(b):
+                continue
+            expression = reduce_units(b * first.expression - a * second.expression, problem.units, problem.signs)
+            label = f"{first.label} and {second.label}"
+            found.append(Equation(label, expression, first.lets + second.lets))
+    return tuple(found)
+
+
+def squares(problem: Problem) -> tuple[Equation, ...]:
+    """Sums of squares of two equations; the known side is named as a length."""
+    found: list[Equation] = []
+    for pair in combinations(problem.equations, 2):
+        equation = _sum_of_squares(problem, *pair)
+        if equation is not None:
+            found.append(equation)
+    return tuple(found)
+
+
+def _sum_of_squares(problem: Problem, first: Equation, second: Equation) -> Equation | None:
+    sides = [split_known(e.expression, problem.atoms()) for e in (first, second)]
+    if any(moving == 0 or known == 0 or _has_plain_unknown(problem, moving) for moving, known in sides):
+        return None
+    moving = reduce_units(sum(m**2 for m, _ in sides), problem.units, problem.signs)
+    if not problem.unknowns_of(moving) or len(problem.unknowns_of(moving)) == len(_unknowns(problem, first, second)):
+        return None
+    naming = Naming(problem, first.lets + second.lets)
+    x, y = (
+        naming.named(-known, f"wrist_{e.label}", "what the unknown links must span")
+        for e, (_, known) in zip((first, second), sides, strict=True)
+    )
+    reach = naming.length("reach", x, y)
+    lets: tuple[Let, ...] = naming.lets
+    return Equation(f"{first.label}² + {second.label}²", moving - reach**2, lets)
+
+
+def _has_plain_unknown(problem: Problem, expression: sp.Expr) -> bool:
+    """Whether an angle or a length occurs outside sines and cosines: its square would only be longer."""
+    return bool(expression.free_symbols & {*problem.lengths, *problem.angles})
+
+
+def _unknowns(problem: Problem, first: Equation, second: Equation) -> set[sp.Symbol]:
+    return {*problem.unknowns_of(first.expression), *problem.unknowns_of(second.expression)}

@@ -1,0 +1,118 @@
+"""The Jacobian, from A x' + B q' = 0, and the singularity margins that multiply to its determinant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+
+from derive.forward import Forward, named_trigonometry
+from derive.frames import Motion
+from derive.kinematics import Margin
+from derive.mechanism import DescriptionError, Mechanism, Turning
+from derive.passes import assemble
+from derive.pose import Screw, pose_of
+from derive.program import Let, Output, Program, Statement, Status, real
+from derive.run import run
+from derive.sampling import sample_axes, sample_machine
+
+
+def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
+    """The task's rows: commanded positions, then the commanded turn."""
+    turn = ("turn z",) if mechanism.task.turning is Turning.ABOUT_Z else ()
+    return (*mechanism.task.position, *turn)
+
+
+def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
+    """Rows of the task by axes; rotary axes per radian."""
+    matrix = _by_screws(mechanism) if mechanism.chain is not None else _by_closure(mechanism)
+    coupled = matrix * _motor_matrix(mechanism)
+    entries = [sp.expand_mul(e) for e in coupled]
+    lets, values = named_trigonometry(mechanism, entries)
+    width = len(mechanism.joints)
+    outputs = [Output(f"j{k // width + 1}{k % width + 1}", v) for k, v in enumerate(values)]
+    return assemble("jacobian", (*forward.statements, *lets), outputs)
+
+
+def _by_screws(mechanism: Mechanism) -> sp.Matrix:
+    """A serial chain: every factor moves the end as a screw (z × p), scaled by how each joint moves the factor."""
+    assert mechanism.chain is not None
+    pose = pose_of(mechanism.chain)
+    columns = []
+    for joint in mechanism.joints:
+        column = sp.zeros(6, 1)
+        for screw in pose.screws:
+            rate = sp.diff(screw.amount, joint.symbol)
+            if rate != 0:
+                column += rate * _twist(screw, pose.position)
+        columns.append(column)
+    full = sp.Matrix.hstack(*columns)
+    chosen = ["xyz".index(c) for c in mechanism.task.position]
+    return full.extract(chosen + ([5] if mechanism.task.turning is Turning.ABOUT_Z else []), list(range(full.cols)))
+
+
+def _twist(screw: Screw, position: sp.ImmutableMatrix) -> sp.Matrix:
+    direction = sp.Matrix(screw.direction)
+    if screw.motion is Motion.SHIFT:
+        return sp.Matrix.vstack(direction, sp.zeros(3, 1))
+    return sp.Matrix.vstack(direction.cross(sp.Matrix(position - screw.origin)), direction)
+
+
+def _by_closure(mechanism: Mechanism) -> sp.Matrix:
+    """Stated equations: -A^-1 B, with A = dΦ/dx free of the pose."""
+    closure = sp.Matrix([sp.sympify(e) for e in mechanism.closure])
+    pose = closure.jacobian([real(c) for c in mechanism.task.position])
+    if pose.free_symbols or pose.det() == 0:
+        raise DescriptionError("the closure does not determine the position affinely")
+    return -pose.inv() * closure.jacobian([j.symbol for j in mechanism.joints])
+
+
+def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
+    """How the motors move the joints: the identity, and the gear couplings."""
+    joints = sp.Matrix([j.motor + j.coupling for j in mechanism.joints])
+    return joints.jacobian([j.motor for j in mechanism.joints])
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A candidate margin: a slope or measure over its scale, at axis values."""
+
+    name: str
+    value: sp.Expr
+
+
+def singularity_program(
+    mechanism: Mechanism, statements: Sequence[Statement], factors: Sequence[Factor], jacobian: Program
+) -> tuple[Program, tuple[Margin, ...]]:
+    """The margins that multiply to the determinant of the Jacobian, and their integer exponents."""
+    lets = [Let(real(f"margin_{f.name}"), f.value) for f in factors]
+    outputs = [Output(f.name, let.name) for f, let in zip(factors, lets, strict=True)]
+    draft = assemble("singularity", (*statements, *lets), outputs)
+    exponents = _exponents(mechanism, draft, jacobian)
+    kept = [(o, e) for o, e in zip(draft.outputs, exponents, strict=True) if e != 0]
+    program = assemble("singularity", draft.body, [o for o, _ in kept])
+    return program, tuple(Margin(o.name, e, "type 1") for o, e in kept)
+
+
+def _exponents(mechanism: Mechanism, margins: Program, jacobian: Program) -> list[int]:
+    """Fit log|det J| = c + Σ e_k log|m_k| over poses of one machine; the e_k must be integers and the fit exact."""
+    machine = sample_machine(mechanism, 11)
+    samples = {**machine, **sample_axes(mechanism, machine, 64, 12)}
+    values, status = run(margins, samples)
+    entries, _ = run(jacobian, samples)
+    good = np.broadcast_to(status == Status.OK, (64,))
+    rows, columns = len(jacobian_rows(mechanism)), len(mechanism.joints)
+    matrix = np.stack([np.broadcast_to(v, (64,)) for v in entries.values()], axis=-1).reshape(64, rows, columns)[good]
+    volume = np.log(np.sqrt(np.abs(np.linalg.det(matrix @ matrix.transpose(0, 2, 1)))))
+    logs = [np.log(np.abs(np.broadcast_to(values[o.name], (64,))[good])) for o in margins.outputs]
+    design = np.stack([*logs, np.ones_like(volume)], axis=-1)
+    solution, *_ = np.linalg.lstsq(design, volume, rcond=None)
+    exponents = [int(round(e)) for e in solution[:-1]]
+    fitted = design[:, :-1] @ np.asarray(exponents, dtype=float)
+    spread = float(np.ptp(volume - fitted)) if volume.size else 0.0
+    if spread > 1e-6:
+        raise DescriptionError(f"the margins {[o.name for o in margins.outputs]} do not multiply to the determinant")
+    return exponents
+

@@ -1,0 +1,133 @@
+"""Forward kinematics: from axis values to the pose, and everything that is read off a set of axis values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.algebra import cosine, polynomial, sine
+from derive.closure import COORDINATES, HEADING, angles_of, heading_of, pose_closure, signs_of
+from derive.composite import name_of, terms_of
+from derive.edges import ROTATION_ENTRIES, finite, frozen_lets, joint_lets
+from derive.inverse import Inverse
+from derive.mechanism import Mechanism, Turning
+from derive.parameters import SCALE
+from derive.passes import assemble
+from derive.pose import pose_of
+from derive.problem import Problem
+from derive.program import BOUNDARY, Let, Output, Program, Require, Select, Statement, Status, real
+from derive.solve import solve
+
+
+@dataclass(frozen=True)
+class Forward:
+    """The pose as statements: joints, the cosines and sines it needs, position; and the rotation's entries."""
+
+    statements: tuple[Statement, ...]
+    position: tuple[sp.Expr, ...]
+    rotation: tuple[sp.Expr, ...]
+
+
+def pose_at_axes(mechanism: Mechanism) -> Forward:
+    """The pose of a mechanism at its axis values; quantities that must be positive are required to be."""
+    checks = (*finite([j.axis for j in mechanism.joints]), *joint_lets(mechanism), *_positive(mechanism))
+    if mechanism.chain is not None:
+        pose = pose_of(mechanism.chain)
+        lets, values = named_trigonometry(mechanism, [*pose.position, *pose.rotation])
+        position = tuple(Let(real(c), v) for c, v in zip(COORDINATES, values[:3], strict=True))
+        return Forward((*checks, *lets, *position), tuple(p.name for p in position), tuple(values[3:]))
+    solved = _solve_for_position(mechanism)
+    lets, values = named_trigonometry(mechanism, [s.value for s in solved])
+    bound = tuple(Let(s.name, v, s.note) for s, v in zip(solved, values, strict=True))
+    position_values = tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATES)
+    return Forward((*checks, *lets, *bound), position_values, tuple(sp.eye(3)))
+
+
+def _solve_for_position(mechanism: Mechanism) -> tuple[Let, ...]:
+    """The stated closure solved for x, y and z: the same peeling, the joints known."""
+    unknown = tuple(real(c) for c in mechanism.task.position)
+    problem = Problem((), unknown, pose_closure(mechanism).equations, angles_of(mechanism), {}, SCALE, signs_of(mechanism))
+    derivation = solve(problem, (), lambda angle: ())
+    return tuple(s for s in derivation.statements if isinstance(s, Let))
+
+
+def _positive(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """Forward kinematics refuses the mirror that the machine does not have."""
+    checks: list[Statement] = []
+    lengths = {j.symbol for j in mechanism.joints if not j.is_angle}
+    for value in mechanism.positive:
+        scale = SCALE if value.free_symbols & lengths else sp.Integer(1)
+        lets, (named,) = named_trigonometry(mechanism, [value])
+        condition = sp.Ge(named, -BOUNDARY * scale)
+        checks += [*lets, Require(condition, Status.IMPOSSIBLE, "the mirror that the machine does not have")]
+    return tuple(checks)
+
+
+def named_trigonometry(mechanism: Mechanism, values: Iterable[sp.Expr]) -> tuple[tuple[Let, ...], list[sp.Expr]]:
+    """The values with every sine and cosine under its name (`cos_a12`), and these names bound."""
+    values = [sp.sympify(v) for v in values]
+    lets: dict[sp.Symbol, Let] = {}
+    table: dict[sp.Expr, sp.Expr] = {}
+    angles = angles_of(mechanism)
+    for function in sorted(sp.Matrix(values).atoms(sp.sin, sp.cos), key=sp.default_sort_key):
+        terms = terms_of(sp.expand(function.args[0]), angles)
+        word = "sin" if isinstance(function, sp.sin) else "cos"
+        if terms is None:
+            table[function] = polynomial(function, angles, signs_of(mechanism))
+            lets.update({f(a): Let(f(a), g(a)) for a in angles for f, g in ((sine, sp.sin), (cosine, sp.cos))})
+        else:
+            name = real(f"{word}_{name_of(terms)}")
+            table[function] = name
+            lets[name] = Let(name, function)
+    return tuple(lets.values()), [v.xreplace(table) for v in values]
+
+
+def forward_program(mechanism: Mechanism, forward: Forward, margins: tuple[Let, ...]) -> Program:
+    """Position, rotation, and the signed margin of every branch."""
+    outputs = [Output(c, v) for c, v in zip(COORDINATES, forward.position, strict=True)]
+    outputs += _rotation_outputs(forward)
+    outputs += [Output(m.name.name, m.name) for m in margins]
+    return assemble("forward", (*forward.statements, *margins), outputs)
+
+
+def orientation_program(forward: Forward) -> Program:
+    """The rotation alone."""
+    return assemble("orientation", forward.statements, _rotation_outputs(forward))
+
+
+def _rotation_outputs(forward: Forward) -> list[Output]:
+    return [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, forward.rotation, strict=True)]
+
+
+def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward) -> tuple[Statement, ...]:
+    """What the inverse derivation's names are at given axis values: for slopes and measures.
+
+    Solved sines and cosines become those of the joints; all other names keep their definition.
+    """
+    table = _angle_values(mechanism, inverse)
+    trigonometric = {f(a): Let(f(a), g(v)) for a, v in table.items() for f, g in ((sine, sp.sin), (cosine, sp.cos))}
+    solved = {s for j in mechanism.joints for s in (j.symbol, j.axis, j.motor)}
+    own = {s.name for s in forward.statements if isinstance(s, Let)}
+    naming = [s for j in inverse.frozen for s in frozen_lets(j)]
+    dropped = solved | own | {s.name for s in naming if isinstance(s, Let)} | trigonometric.keys()
+    kept = [
+        s
+        for s in (*inverse.closure.lets, *inverse.derivation.statements)
+        if isinstance(s, Let) and s.name not in dropped
+    ]
+    present = {s.name for s in forward.statements if isinstance(s, Let)}
+    lets = tuple(s for n, s in trigonometric.items() if n not in present)
+    lets += tuple(Let(s.sigma, Select(sp.Ge(s.value, 0), 1, -1)) for s in inverse.derivation.slopes)
+    return (*forward.statements, *lets, *kept)
+
+
+def _angle_values(mechanism: Mechanism, inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:
+    """Every angle that the derivation names, through the joints."""
+    table: dict[sp.Symbol, sp.Expr] = {a: a for a in angles_of(mechanism)}
+    for total in inverse.derivation.sums:
+        table[total.symbol] = sp.Add(*[table[a] * s for a, s in total.terms])
+    if mechanism.chain is not None and mechanism.task.turning is not Turning.NONE:
+        table[HEADING] = heading_of(mechanism.chain)
+    return table

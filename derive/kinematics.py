@@ -1,0 +1,122 @@
+"""What the build hands to the emitters: every program of one mechanism, and what its names mean.
+
+Names that programs share:
+
+    link_length_1, offset_a1, ...   parameters and constants: outputs of `setup`, free in all other programs
+    axis_a1, ref_a1                 axis value and its reference (degrees or user's length unit)
+    turn_a1                         commanded period number (an integer as a real), 0 = open
+    sigma_elbow                     branch sign: +1 is byte 1, -1 is byte 2
+    x, y, z, r11 … r33              frame: position, rotation by rows (columns are the axes of the frame)
+    point_x, point_y, point_z       the point off the flange (the tool offset), in flange coordinates
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from derive.mechanism import Branch, Joint, Limited, Mechanism, Parameter
+from derive.program import Program
+
+
+class Freedom(Enum):
+    """The orientations a flange can have (SoftMotion's OrientationDOF)."""
+
+    ZERO = "zero"
+    ONE = "one"
+    THREE = "three"
+
+
+@dataclass(frozen=True)
+class Margin:
+    """A dimensionless distance from a singularity, with the exponent it has in sqrt(det(J^T J))."""
+
+    name: str
+    exponent: int
+    kind: str
+    """"type 1" (serial) or "type 2" (parallel)."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What the independent witness measured, rounded up so that it reads the same on every machine."""
+
+    poses: int
+    closure_residual: float
+    round_trip: float
+    jacobian: float
+    solutions: int
+    """Real solutions found by multi-start root finding, agreeing with the slots at every sampled pose."""
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """All programs of one mechanism.
+
+    setup            parameters (all of `parameters`, flags and signs as numbers) → every constant that the other programs read.
+                     Its conditions are what Initialize refuses; all carry NOT_INITIALIZED.
+                     Among its outputs per axis: `unlimited_a1` (0/1), `lower_a1`, `upper_a1` (effective limits as
+                     GetAxisProperties reports them), and `check_limits` (0/1).
+    forward          axis_* → x y z r11…r33, and `branch_<name>` per branch: the signed margin, positive = byte 1,
+                     at most 1e-11 in size = byte 3 (the branches coincide)
+    orientation      axis_* → r11…r33
+    branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*; one branch, periods included, limits not
+    limits           axis_* → nothing; its conditions are the axis limits and the limits of coupled quantities
+    singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size
+    jacobian         axis_* → j11, j12, … (row, column from 1): rows are `rows`, columns the axes; per radian
+    image            nothing → zero_r11…zero_r33, rot_x rot_y rot_z (base), u_x u_y u_z (flange): R·u = rot
+    projection       r11…r33 → the same, projected to the nearest rotation the flange can have; None where not chosen
+    offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None where the interface is not offered
+    offset_configuration   axis_*, point_* → `branch_<name>`; None likewise
+    """
+
+    mechanism: Mechanism
+    parameters: tuple[Parameter, ...]
+    setup: Program
+    forward: Program
+    orientation: Program
+    branch: Program
+    limits: Program
+    singularity: Program
+    jacobian: Program
+    image: Program
+    projection: Program | None
+    offset_branch: Program | None
+    offset_configuration: Program | None
+    rows: tuple[str, ...]
+    """The rows of the Jacobian: "x", "y", "z", "turn z"."""
+    margins: tuple[Margin, ...]
+    freedom: Freedom
+    reads_rotation: bool
+    evidence: Evidence | None = None
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        """The branches, in the order of their bytes: the first bytes of the configuration."""
+        return self.mechanism.branches
+
+    @property
+    def period_joints(self) -> tuple[Joint, ...]:
+        """The multi-turn axes, in the order of their bytes, which follow the branch bytes."""
+        return self.mechanism.period_joints
+
+    @property
+    def configuration_size(self) -> int:
+        """Bytes of the configuration; 0 where the mechanism has none."""
+        return len(self.branches) + len(self.period_joints)
+
+    @property
+    def chooses_twist(self) -> bool:
+        """Whether the mechanism follows a turn of the commanded rotation and projects the rest."""
+        return self.projection is not None
+
+    @property
+    def limited(self) -> tuple[Limited, ...]:
+        """Quantities with limits of their own."""
+        return self.mechanism.limited
+
+    @property
+    def distance_joints(self) -> tuple[Joint, ...]:
+        """The axes whose squared differences decide an automatic choice: the rotary ones, or all where there is none."""
+        angles = tuple(j for j in self.mechanism.joints if j.is_angle)
+        return angles or self.mechanism.joints

@@ -1,0 +1,22 @@
+"""Kin_Crane: a boom in spherical coordinates; the load keeps its orientation."""
+
+from sympy import cos, sin
+
+from derive.mechanism import Mechanism, Task, Vendor, X, Y, Z, arc, linear, rotary
+
+R = linear("R", "Length of the boom", domain=(0.0, 1e9), nominal=200.0)
+THETA = rotary("Theta", "Azimuth, from X")
+PHI = arc("Phi", "Polar angle, from +Z", domain=(0.0, 180.0), nominal=60.0)
+
+MECHANISM = Mechanism(
+    name="Kin_Crane",
+    vendor=Vendor.TEXTBOOK,
+    family="polar",
+    source="Control Engineering, Kinematics Equations for Control of Robotic Systems",
+    summary="Spherical crane: length, azimuth and polar angle of a boom.",
+    joints=(R, THETA, PHI),
+    closure=(X - R * sin(PHI) * cos(THETA), Y - R * sin(PHI) * sin(THETA), Z - R * cos(PHI)),
+    task=Task("xyz"),
+    positive=(R, sin(PHI)),
+    notes=("On the vertical the azimuth is the reference's; at the origin the polar angle is too.",),
+)

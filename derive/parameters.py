@@ -1,0 +1,154 @@
+"""All inputs of a machine, and the setup program that checks them and computes what depends on them alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import sympy as sp
+
+from derive.mechanism import Joint, Mechanism, Parameter, Role
+from derive.passes import bare
+from derive.program import LARGEST, LIMIT, UNLIMITED, Let, Output, Program, Require, Select, Statement, Status, real
+from derive.verify import verify
+
+SCALE = real("machine_scale")
+"""A length of the machine: the sum of its lengths, or one user's unit where it has none."""
+CHECK_LIMITS = "check_limits"
+
+
+def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
+    """The description's parameters, then offset and limits of every axis and of every limited quantity."""
+    parameters = list(mechanism.parameters)
+    for joint in mechanism.joints:
+        parameters.append(_number(joint, "offset", "axis value at the kinematic zero position", joint.offset_range))
+    for joint in mechanism.joints:
+        for word in ("lower", "upper"):
+            parameters.append(_number(joint, word, f"{word} limit of the axis, both 0: no limit", joint.limit_range))
+    for quantity in mechanism.limited:
+        unit = "deg" if quantity.is_angle else "u"
+        for word in ("lower", "upper"):
+            meaning = f"{word} limit of {quantity.meaning}, both 0: no limit"
+            parameters.append(_setting(f"{word}_{quantity.name}", meaning, unit, None))
+    check = Parameter(
+        real(CHECK_LIMITS), CHECK_LIMITS, Role.FLAG, "inverse kinematics tests the limits", "", 0.0, 1.0, False, 1.0, 1.0
+    )
+    return (*parameters, check)
+
+
+def _number(joint: Joint, word: str, meaning: str, interval: tuple[float, float] | None) -> Parameter:
+    unit = "deg" if joint.is_angle else "u"
+    return _setting(f"{word}_{joint.key}", f"{joint.name}: {meaning}", unit, interval)
+
+
+def _setting(name: str, meaning: str, unit: str, interval: tuple[float, float] | None) -> Parameter:
+    low, high = interval or (-1e9, 1e9)
+    role = Role.ANGLE if unit == "deg" else Role.DISTANCE
+    return Parameter(real(name), name, role, meaning, unit, low, high, False, 0.0, 0.0)
+
+
+def setup_program(mechanism: Mechanism, parameters: tuple[Parameter, ...], hoisted: tuple[Let, ...]) -> Program:
+    """Check every parameter; outputs are the parameters themselves, the effective limits, and what was hoisted."""
+    body: list[Statement] = [condition for p in parameters for condition in _range_of(p)]
+    for constraint in mechanism.constraints:
+        body.append(Require(_inequality(constraint.condition), Status.NOT_INITIALIZED, constraint.message))
+    outputs = [Output(p.name, real(p.name)) for p in parameters if not p.name.startswith(("lower_", "upper_"))]
+    for joint in mechanism.joints:
+        lets = _limits(joint.key, _fallback(joint))
+        body += [_ordered(joint.key), *lets, *_turn_window(joint)]
+        outputs += _limit_outputs(joint.key)
+        outputs += [Output(f"{w}_{joint.key}", real(f"{w}_{joint.key}")) for w in ("single", "mid") if joint.multi_turn]
+    for quantity in mechanism.limited:
+        body += [_ordered(quantity.name), *_limits(quantity.name, ())]
+        outputs += _limit_outputs(quantity.name)
+    body.append(Let(SCALE, machine_scale(parameters), "a length of the machine"))
+    body += hoisted
+    outputs += [Output(SCALE.name, SCALE), *(Output(let.name.name, let.name) for let in hoisted)]
+    inputs = tuple(real(p.name) for p in parameters)
+    return verify(Program("setup", inputs, bare(body), tuple(outputs)))
+
+
+def machine_scale(parameters: Iterable[Parameter]) -> sp.Expr:
+    """The sum of the lengths of the description; one user's unit where there is none."""
+    own = [p for p in parameters if p.role is Role.LENGTH or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)]
+    return sp.Add(*[p.symbol for p in own]) if any(p.role is Role.LENGTH for p in own) else sp.Integer(1)
+
+
+def _range_of(parameter: Parameter) -> tuple[Require, ...]:
+    symbol, note = parameter.symbol, f"{parameter.name}: {parameter.meaning}"
+    if parameter.role is Role.FLAG:
+        return ()
+    if parameter.role is Role.SIGN:
+        condition = sp.And(sp.Ge(sp.Abs(symbol), 1), sp.Le(sp.Abs(symbol), 1))
+        return (Require(condition, Status.NOT_INITIALIZED, note),)
+    bare = real(parameter.name)  # without assumptions: SymPy must not decide `length > 0` by itself
+    low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
+    high = sp.Float(parameter.high) if parameter.high % 1 else sp.Integer(int(parameter.high))
+    above = sp.Gt(bare, low) if parameter.low_open else sp.Ge(bare, low)
+    return (Require(sp.And(above, sp.Le(bare, min(high, LARGEST))), Status.NOT_INITIALIZED, note),)
+
+
+def _inequality(condition: sp.Basic) -> sp.Basic:
+    """An equation as a positive comparison, which not-a-number fails."""
+    return sp.Le(sp.Abs(condition.lhs - condition.rhs), 0) if isinstance(condition, sp.Eq) else condition
+
+
+def _ordered(key: str) -> Require:
+    lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
+    condition = sp.Or(sp.Lt(lower, upper), sp.Le(sp.Abs(lower) + sp.Abs(upper), 0))
+    return Require(condition, Status.NOT_INITIALIZED, f"lower_{key} below upper_{key}, or both 0")
+
+
+Fallback = tuple[tuple[sp.Basic, sp.Expr, sp.Expr], ...]
+
+
+def _fallback(joint: Joint) -> Fallback:
+    """(condition, lower, upper) where no limit is given: a carried pitch, or what the closure allows."""
+    found: list[tuple[sp.Basic, sp.Expr, sp.Expr]] = []
+    if joint.pitch != 0 and joint.limit_range is not None:
+        low, high = (sp.Integer(int(v)) for v in joint.limit_range)
+        found.append((sp.Gt(sp.Abs(joint.pitch), 0), low, high))
+    if joint.domain is not None:
+        low, high = (sp.Integer(int(v)) + joint.offset for v in joint.domain)
+        found.append((sp.true, low, high))
+    return tuple(found)
+
+
+def _limits(key: str, fallback: Fallback) -> tuple[Let, ...]:
+    lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
+    low, high, unlimited = (real(f"{word}_{key}") for word in ("effective_lower", "effective_upper", "unlimited"))
+    open_ended = sp.Le(sp.Abs(lower) + sp.Abs(upper), 0)
+    low_value, high_value, free = lower, upper, sp.Integer(1)
+    for condition, bottom, top in fallback:
+        given = sp.Gt(sp.Abs(lower) + sp.Abs(upper), 0)
+        low_value = Select(given, lower, Select(condition, bottom, sp.Integer(0)) if condition != sp.true else bottom)
+        high_value = Select(given, upper, Select(condition, top, sp.Integer(0)) if condition != sp.true else top)
+        free = Select(condition, sp.Integer(0), sp.Integer(1)) if condition != sp.true else sp.Integer(0)
+    tolerance = real(f"tolerance_{key}")
+    return (
+        Let(unlimited, Select(open_ended, free, sp.Integer(0)), f"{key}: no limit"),
+        Let(low, low_value),
+        Let(high, high_value),
+        Let(tolerance, LIMIT * (1 + sp.Abs(low) + sp.Abs(high))),
+        Let(real(f"lowest_{key}"), Select(sp.Gt(unlimited, 0), -UNLIMITED, low - tolerance)),
+        Let(real(f"highest_{key}"), Select(sp.Gt(unlimited, 0), UNLIMITED, high + tolerance)),
+    )
+
+
+def _limit_outputs(key: str) -> list[Output]:
+    return [
+        Output(f"lower_{key}", real(f"effective_lower_{key}")),
+        Output(f"upper_{key}", real(f"effective_upper_{key}")),
+        *(Output(f"{word}_{key}", real(f"{word}_{key}")) for word in ("unlimited", "lowest", "highest")),
+    ]
+
+
+def _turn_window(joint: Joint) -> tuple[Let, ...]:
+    """Whether the axis has one value inside its limits for every direction, and the middle of its range."""
+    if not joint.multi_turn:
+        return ()
+    low, high, unlimited = (real(f"{w}_{joint.key}") for w in ("effective_lower", "effective_upper", "unlimited"))
+    one_turn = sp.And(sp.Le(unlimited, 0), sp.Le(high - low, 360))
+    return (
+        Let(real(f"single_{joint.key}"), Select(one_turn, sp.Integer(1), sp.Integer(0)), "range of one turn at most"),
+        Let(real(f"mid_{joint.key}"), (low + high) / 2),
+    )

@@ -1,0 +1,88 @@
+"""From mechanisms to files: derive, ask the witness, render. Two processes share the mechanisms."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+
+from derive.build import build
+from derive.catalogue import Entry
+from derive.emit import python, st
+from derive.emit.language import Language
+from derive.kinematics import Evidence, Kinematics
+from derive.mechanism import DescriptionError, Mechanism
+from derive.program import Program
+from derive.solve import Unsolved
+from derive.verify import BrokenProgram
+from derive.witness import Disagreement, witness
+
+LANGUAGES: tuple[Language, ...] = (python, st)
+PROCESSES = 2
+_EXPECTED = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
+"""What a wrong description leads to: the message says enough."""
+
+
+class GenerationError(Exception):
+    """Nothing can be generated; the message names the file and the thing."""
+
+
+@dataclass(frozen=True)
+class Built:
+    """One derived mechanism, witnessed, and what it took."""
+
+    kinematics: Kinematics
+    evidence: Evidence
+    seconds: float
+
+    @property
+    def statements(self) -> int:
+        """The statements of all programs."""
+        values = (getattr(self.kinematics, f.name) for f in fields(self.kinematics))
+        return sum(len(v.body) for v in values if isinstance(v, Program))
+
+
+def derive_all(entries: Sequence[Entry]) -> Iterator[Built]:
+    """Derive every mechanism, in the order of the catalogue; raises `GenerationError` at the first that cannot be."""
+    with ProcessPoolExecutor(max_workers=min(PROCESSES, len(entries))) as pool:
+        for (path, _), result in zip(entries, pool.map(_attempt, entries), strict=True):
+            if isinstance(result, str):
+                pool.shutdown(cancel_futures=True)
+                raise GenerationError(f"{path}: {result}")
+            yield result
+
+
+def derive_one(mechanism: Mechanism) -> Built:
+    """Derive one mechanism and measure it."""
+    start = time.perf_counter()
+    kinematics = build(mechanism)
+    evidence = witness(kinematics)
+    return Built(replace(kinematics, evidence=evidence), evidence, time.perf_counter() - start)
+
+
+def render_all(built: Sequence[Built]) -> dict[str, str]:
+    """All generated files: path below the output folder → text."""
+    kinematics = tuple(b.kinematics for b in built)
+    return {
+        str(Path(language.name) / name): text
+        for language in LANGUAGES
+        for name, text in sorted(language.render(kinematics).items())
+    }
+
+
+def _attempt(entry: Entry) -> Built | str:
+    """Derive in a worker process: a problem comes back as text, because not every exception can travel."""
+    try:
+        return derive_one(entry[1])
+    except _EXPECTED as problem:
+        return _one_line(problem)
+    except Exception as problem:
+        place = traceback.extract_tb(problem.__traceback__)[-1]
+        return f"{type(problem).__name__}: {_one_line(problem)} ({Path(place.filename).name}:{place.lineno})"
+
+
+def _one_line(problem: Exception) -> str:
+    return " ".join(str(problem).split())

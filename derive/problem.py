@@ -1,0 +1,113 @@
+"""What the solver works on: unknowns and equations; and what a subproblem answers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.algebra import cosine, reduce_units, sine
+from derive.program import Let, Statement
+
+
+@dataclass(frozen=True)
+class Equation:
+    """expression = 0. `lets` name what it refers to; they are emitted when the equation is used."""
+
+    label: str
+    expression: sp.Expr
+    lets: tuple[Let, ...] = ()
+
+
+@dataclass(frozen=True)
+class Slope:
+    """The derivative of a two-root step by its unknown, over a scale of parameters: its sign is the branch."""
+
+    sigma: sp.Symbol
+    value: sp.Expr
+    """Equals sigma times something not negative at every solution."""
+    scale: sp.Expr
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What must not vanish for `angle` to be determined, over a scale of parameters."""
+
+    angle: sp.Symbol
+    value: sp.Expr
+    scale: sp.Expr
+
+
+@dataclass(frozen=True)
+class Binding:
+    """The answer of a subproblem: statements that bind unknowns, and where they lose or double their meaning."""
+
+    rule: str
+    unknowns: tuple[sp.Symbol, ...]
+    statements: tuple[Statement, ...]
+    slope: Slope | None = None
+    measure: Measure | None = None
+    new_equations: tuple[Equation, ...] = ()
+    cosine_alone: bool = False
+
+    @property
+    def rank(self) -> tuple[bool, bool, bool, int]:
+        """Smaller is better: both functions known, a measure that cannot vanish, one root, short."""
+        size = sum(int(sp.count_ops(s.value)) for s in self.statements if isinstance(s, Let))
+        return (self.cosine_alone, self.measure is not None, self.slope is not None, size)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Equations in unknown angles and lengths; everything else in them is known."""
+
+    angles: tuple[sp.Symbol, ...]
+    lengths: tuple[sp.Symbol, ...]
+    equations: tuple[Equation, ...]
+    units: tuple[sp.Symbol, ...]
+    """All angles, known ones too, whose sine and cosine symbols obey sin^2 + cos^2 = 1."""
+    free: Mapping[sp.Symbol, sp.Expr]
+    """The reference value of each angle, in radians, taken where nothing determines it."""
+    scale: sp.Expr
+    """A length of the machine, made of parameters only, never zero."""
+    signs: tuple[sp.Symbol, ...] = ()
+    positive: tuple[sp.Expr, ...] = ()
+    """Normal forms of the quantities whose negative mirror is excluded."""
+    pending: tuple[sp.Symbol, ...] = ()
+    """Angles that follow from a sum once its other terms are known: unknown, but nothing to solve for."""
+    definitions: Mapping[sp.Symbol, sp.Expr] | None = None
+    """What known names stand for, as far as they are polynomials: for tests of zero."""
+
+    def atoms(self) -> tuple[sp.Symbol, ...]:
+        """Every symbol that is unknown: lengths, angles, their sines and cosines."""
+        angles = (*self.angles, *self.pending)
+        return (*self.lengths, *angles, *(f(a) for a in angles for f in (cosine, sine)))
+
+    def unknowns_of(self, expression: sp.Expr) -> tuple[sp.Symbol, ...]:
+        """The unknown angles and lengths that occur, in a fixed order."""
+        present = expression.free_symbols
+        angles = [a for a in (*self.angles, *self.pending) if present & {a, sine(a), cosine(a)}]
+        return (*(u for u in self.lengths if u in present), *angles)
+
+    def reduce(self, expression: sp.Expr) -> sp.Expr:
+        """The normal form of an expression with the known names written out: zero if and only if it is zero."""
+        definitions = self.definitions or {}
+        while expression.free_symbols & definitions.keys():
+            expression = expression.xreplace(dict(definitions))
+        return reduce_units(expression, self.units, self.signs)
+
+    def tidy(self, expression: sp.Expr) -> sp.Expr:
+        """The expression with the squares of signs written as one, names left as they are."""
+        return reduce_units(expression, (), self.signs)
+
+    def is_never_zero(self, expression: sp.Expr) -> bool:
+        """Whether an expression of known names cannot vanish for any legal machine and pose."""
+        reduced = self.reduce(expression)
+        if reduced in self.signs or -reduced in self.signs:
+            return True
+        return bool(reduced.is_nonzero)
+
+    def with_equations(self, equations: tuple[Equation, ...]) -> Problem:
+        """The same unknowns with other equations."""
+        return replace(self, equations=equations)

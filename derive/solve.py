@@ -1,0 +1,120 @@
+"""The driver: peel unknowns by solved subproblems until none is left, or say what is left.
+
+It knows no mechanism and no rule: it asks every rule for candidates, takes the best, substitutes, repeats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.consequences import differences, squares
+from derive.ledger import Ledger
+from derive.parallel import Sum, candidate_sums, resolve, substitute
+from derive.problem import Binding, Equation, Measure, Problem, Slope
+from derive.program import Statement
+from derive.subproblems.affine import affine
+from derive.subproblems.pair import pair
+from derive.subproblems.polar import polar
+from derive.subproblems.trigonometric import trigonometric
+
+Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
+RULES: tuple[Rule, ...] = (affine, pair, polar, trigonometric)
+TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (lambda p: p.equations, differences, squares)
+Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
+
+
+class Unsolved(Exception):
+    """No subproblem fits what is left; the message shows the unknowns and the equations."""
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """The solution as statements, with its branches and with what must not vanish."""
+
+    statements: tuple[Statement, ...]
+    slopes: tuple[Slope, ...]
+    measures: tuple[Measure, ...]
+    rules: tuple[str, ...]
+    sums: tuple[Sum, ...] = ()
+
+
+def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:
+    """Solve a problem.
+
+    `arguments` are the arguments of sines and cosines in the original equations, where sums of parallel
+    angles can be read. `resolve_angle` gives the statements that bind an angle itself (its turns chosen), for
+    equations that hold it outside sines and cosines.
+    """
+    ledger = Ledger()
+    sums: tuple[Sum, ...] = ()
+    rules: list[str] = []
+    while problem.angles or problem.lengths or problem.pending:
+        problem, binding, sums = _next(problem, sums, arguments)
+        binding = ledger.commit(binding)
+        rules.append(binding.rule)
+        plain = [a for a in binding.unknowns if any(a in e.expression.free_symbols for e in problem.equations)]
+        for angle in plain:
+            if angle not in problem.lengths:
+                ledger.append(resolve_angle(angle))
+        problem = _without(problem, binding, ledger)
+    _refuse_contradictions(problem)
+    return Derivation(ledger.statements, ledger.slopes, ledger.measures, tuple(rules), sums)
+
+
+def _next(
+    problem: Problem, sums: tuple[Sum, ...], arguments: Sequence[sp.Expr]
+) -> tuple[Problem, Binding, tuple[Sum, ...]]:
+    for total in sums:
+        binding = resolve(problem, total) if total.replaced in problem.pending else None
+        if binding is not None:
+            return problem, binding, sums
+    found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
+    if found is not None:
+        return problem, found, sums
+    for total in candidate_sums(problem, arguments):
+        trial = substitute(problem, total)
+        found = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in TIERS)
+        if found is not None:
+            return trial, found, (*sums, total)
+    raise Unsolved(_message(problem))
+
+
+def _candidates(problem: Problem, equations: tuple[Equation, ...]) -> list[Binding]:
+    return [binding for rule in RULES for binding in rule(problem, equations)]
+
+
+def _best(tiers: Iterable[list[Binding]]) -> Binding | None:
+    for candidates in tiers:
+        if candidates:
+            return min(candidates, key=lambda b: b.rank)  # min keeps the first of equals: deterministic
+    return None
+
+
+def _without(problem: Problem, binding: Binding, ledger: Ledger) -> Problem:
+    """The problem once the binding is known."""
+    known = set(binding.unknowns)
+    rest = replace(
+        problem,
+        angles=tuple(a for a in problem.angles if a not in known),
+        lengths=tuple(v for v in problem.lengths if v not in known),
+        pending=tuple(a for a in problem.pending if a not in known),
+        definitions=ledger.definitions(problem.units),
+    )
+    equations = tuple(e for e in (*problem.equations, *binding.new_equations) if rest.unknowns_of(e.expression))
+    return rest.with_equations(equations)
+
+
+def _refuse_contradictions(problem: Problem) -> None:
+    if problem.equations:
+        raise Unsolved(_message(problem))
+
+
+def _message(problem: Problem) -> str:
+    unknowns = ", ".join(str(u) for u in (*problem.lengths, *problem.angles, *problem.pending))
+    if not problem.equations:
+        return f"the closure does not determine {unknowns}"
+    left = "\n".join(f"    {e.label}: {e.expression} = 0" for e in problem.equations)
+    return f"no subproblem determines {unknowns}; equations left:\n{left}"

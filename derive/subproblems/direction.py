@@ -1,0 +1,50 @@
+"""Direction:  cos u : sin u = along : across.
+
+One root. Where the measure (the length that turns) vanishes nothing determines u: it takes its reference.
+The angle is normalised by the length of (along, across) itself, so that sin^2 + cos^2 = 1 to rounding.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derive.algebra import cosine, sine
+from derive.problem import Problem
+from derive.program import FREE_ANGLE, Let, NearestOnArc, Root, Select, Statement, real
+
+
+def direction(
+    problem: Problem,
+    angle: sp.Symbol,
+    *,
+    along: sp.Expr,
+    across: sp.Expr,
+    measure: sp.Expr,
+    note: str,
+    is_length: bool = False,
+) -> tuple[Statement, ...]:
+    """Bind cosine and sine of the angle; `measure` decides whether they are determined.
+
+    `is_length`: the measure is the length of (along, across) itself.
+    """
+    determined = sp.Gt(measure, FREE_ANGLE * problem.scale)
+    free = _free(problem, angle)
+    names = [real(f"{word}_{angle.name}") for word in ("along", "across", "length")]
+    cos_name, sin_name, length = names
+    return (
+        Let(cos_name, along, note),
+        Let(sin_name, across),
+        Let(length, Select(determined, measure if is_length else Root(cos_name**2 + sin_name**2), sp.Integer(1))),
+        Let(cosine(angle), Select(determined, cos_name / length, sp.cos(free)), "its reference where it is free"),
+        Let(sine(angle), Select(determined, sin_name / length, sp.sin(free))),
+    )
+
+
+def _free(problem: Problem, angle: sp.Symbol) -> sp.Expr:
+    """The reference, on the half circle that the machine has."""
+    reference = problem.free[angle]
+    if sine(angle) in problem.positive:
+        return NearestOnArc(reference, sp.pi / 2, sp.pi / 2)
+    if cosine(angle) in problem.positive:
+        return NearestOnArc(reference, sp.Integer(0), sp.pi / 2)
+    return reference

@@ -1,0 +1,111 @@
+"""Trigonometric:  a cos u + b sin u = e.
+
+Two roots. With h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h:
+cos u = (a C - b S) / h,  sin u = (b C + a S) / h. The radicand stays a product: expanded it loses half the digits.
+Slope a sin u - b cos u = h S: sigma is its sign. Guard: |e| <= h, else there is no solution; where they are
+equal both roots meet (degenerate case). An h that can vanish is refused below 1e-9 of the length it is
+compared with: nothing can be aimed then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.algebra import cosine, linear_coefficients, sine
+from derive.problem import Binding, Equation, Problem, Slope
+from derive.program import BOUNDARY, SHORTEST_LINK, Let, Require, Root, Select, Statement, Status, real
+from derive.subproblems.naming import Naming
+
+
+def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every angle that one equation determines up to a sign."""
+    for equation in equations:
+        unknowns = problem.unknowns_of(equation.expression)
+        if len(unknowns) != 1 or unknowns[0] not in problem.angles or unknowns[0] in equation.expression.free_symbols:
+            continue
+        angle = unknowns[0]
+        linear = linear_coefficients(equation.expression, (cosine(angle), sine(angle)))
+        if linear is not None:
+            (a, b), rest = linear
+            flip = -1 if (a if a != 0 else b).could_extract_minus_sign() else 1
+            yield _solve(problem, equation, angle, _amplitude(problem, equation, angle, flip * a, flip * b, -flip * rest))
+
+
+@dataclass(frozen=True)
+class _Amplitude:
+    """h as a product, the direction of (a, b), and e with squares written through h."""
+
+    naming: Naming
+    length: sp.Expr
+    guard: tuple[Statement, ...]
+    cos_unit: sp.Expr
+    sin_unit: sp.Expr
+    right: sp.Expr
+    slope: sp.Expr
+    slope_scale: sp.Expr
+
+
+def _amplitude(
+    problem: Problem, equation: Equation, angle: sp.Symbol, a: sp.Expr, b: sp.Expr, e: sp.Expr
+) -> _Amplitude:
+    naming = Naming(problem, equation.lets)
+    slope = a * sine(angle) - b * cosine(angle)
+    if b == 0 and a.is_positive:
+        return _Amplitude(naming, a, (), sp.Integer(1), sp.Integer(0), e, slope, a)
+    common = sp.gcd(a, b)
+    along = naming.named(sp.cancel(a / common), f"along_{angle.name}")
+    across = naming.named(sp.cancel(b / common), f"across_{angle.name}")
+    effective = naming.length(f"effective_{angle.name}", along, across, "effective length that the angle turns")
+    aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
+    divisor = real(f"divisor_{angle.name}")
+    guard = (
+        Require(aimable, Status.UNREACHABLE, "the effective length is too short to be aimed"),
+        Let(divisor, Select(aimable, effective, sp.Integer(1))),
+    )
+    right = e
+    if along.is_Symbol:
+        right = sp.expand(e.subs(along**2, divisor**2 - across**2))
+    return _Amplitude(
+        naming, common * divisor, guard, along / divisor, across / divisor, right, slope, common * problem.scale
+    )
+
+
+def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _Amplitude) -> Binding:
+    sigma = real(f"sigma_{angle.name}")
+    turned = amplitude.sin_unit != 0
+    scale = real(f"swing_scale_{angle.name}" if turned else f"scale_{angle.name}")
+    square = real(f"sine_square_{angle.name}")
+    cos_name = real(f"cos_swing_{angle.name}") if turned else cosine(angle)
+    sin_name = real(f"sin_swing_{angle.name}") if turned else sine(angle)
+    length, right = amplitude.length, amplitude.right
+    statements: list[Statement] = [
+        *amplitude.naming.lets,
+        *amplitude.guard,
+        Let(scale, length, f"{angle.name}: law of cosines in the {equation.label} equation"),
+        Let(square, _product(length - right) * _product(length + right) / scale**2, "kept as a product"),
+        Require(sp.Ge(square, -BOUNDARY), Status.UNREACHABLE, "out of reach"),
+        Let(cos_name, right / scale),
+        Let(sin_name, sigma * Root(square)),
+    ]
+    if turned:
+        statements += [
+            Let(cosine(angle), amplitude.cos_unit * cos_name - amplitude.sin_unit * sin_name),
+            Let(sine(angle), amplitude.sin_unit * cos_name + amplitude.cos_unit * sin_name),
+        ]
+    slope = Slope(sigma, amplitude.slope, amplitude.slope_scale)
+    return Binding("trigonometric", (angle,), tuple(statements), slope, cosine_alone=True)
+
+
+def _product(value: sp.Expr) -> sp.Expr:
+    """Factored, with a leading minus inside the factor that has most of them: it reads as lengths compared."""
+    factored = sp.factor(value)
+    factors = list(sp.Mul.make_args(factored))
+    sums = [f for f in factors if f.is_Add]
+    if -1 not in factors or not sums:
+        return factored
+    factors.remove(sp.Integer(-1))
+    most = max(sums, key=lambda f: (sum(t.could_extract_minus_sign() for t in f.args), str(f)))
+    return sp.Mul(*[-f if f is most else f for f in factors])

@@ -1,0 +1,167 @@
+"""Refuse a description that cannot be right, before anything is derived from it."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
+import sympy as sp
+
+from derive.mechanism import DescriptionError, Interval, Joint, Mechanism, Parameter, X, Y, Z
+from derive.program import DEGREE
+
+_BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
+_PARAMETER = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
+_RESERVED = re.compile(r"(axis|ref|turn|sigma|branch|offset|lower|upper|motor|unlimited)_|check_limits\Z|[xyz]\Z|r[123][123]\Z")
+"""Names that programs use for something else."""
+
+Expressions = tuple[tuple[str, sp.Basic], ...]
+
+
+def validate(mechanism: Mechanism) -> Mechanism:
+    """Return the mechanism, or raise `DescriptionError` with one sentence that names what is wrong."""
+    for problem in _problems(mechanism):
+        raise DescriptionError(problem)
+    return mechanism
+
+
+def _problems(mechanism: Mechanism) -> Iterator[str]:
+    yield from _names(mechanism)
+    for parameter in mechanism.parameters:
+        yield from _parameter(parameter)
+    for joint in mechanism.joints:
+        yield from _joint(mechanism, joint)
+    yield from _periods(mechanism)
+    yield from _shape(mechanism)
+    yield from _symbols(mechanism)
+    yield from _constraints(mechanism)
+
+
+def _names(mechanism: Mechanism) -> Iterator[str]:
+    for name in (mechanism.name, *mechanism.aliases):
+        if not _BLOCK.match(name):
+            yield f"{name!r} cannot name a function block"
+    if not mechanism.joints:
+        yield "the mechanism has no joints"
+    for kind, names in (
+        ("joint", [j.name for j in mechanism.joints]),
+        ("parameter", [p.name for p in mechanism.parameters]),
+        ("branch", [b.name for b in mechanism.branches]),
+        ("limited quantity", [q.name for q in mechanism.limited]),
+        ("name", [mechanism.name, *mechanism.aliases]),
+    ):
+        for name, count in Counter(n.lower() for n in names).items():
+            if count > 1:
+                yield f"{kind} {name!r} is given {count} times"
+    for joint in mechanism.joints:
+        if not _AXIS.match(joint.name):
+            yield f"{joint.name!r} cannot name a joint: a capital letter, then letters and digits"
+
+
+def _parameter(parameter: Parameter) -> Iterator[str]:
+    name = parameter.name
+    if not _PARAMETER.match(name) or _RESERVED.match(name):
+        yield f"{name!r} cannot name a parameter: lower-case words joined by _, and none that programs use themselves"
+    if not parameter.low < parameter.high:
+        yield f"parameter {name!r}: its range {_interval(parameter)} is empty"
+    for word, value in (("nominal value", parameter.nominal), ("default", parameter.default)):
+        if value is not None and not _contains(parameter, value):
+            yield f"parameter {name!r}: its {word} {value:g} is outside its range {_interval(parameter)}"
+
+
+def _contains(parameter: Parameter, value: float) -> bool:
+    above = value > parameter.low if parameter.low_open else value >= parameter.low
+    return above and value <= parameter.high
+
+
+def _interval(parameter: Parameter) -> str:
+    return f"{']' if parameter.low_open else '['}{parameter.low:g} .. {parameter.high:g}]"
+
+
+def _joint(mechanism: Mechanism, joint: Joint) -> Iterator[str]:
+    ranges: dict[str, Interval | None] = {
+        "offset_range": joint.offset_range,
+        "limit_range": joint.limit_range,
+        "domain": joint.domain,
+    }
+    for word, interval in ranges.items():
+        if interval is not None and not interval[0] < interval[1]:
+            yield f"joint {joint.name!r}: its {word} {interval} is empty"
+    if joint.domain is not None and not joint.domain[0] <= joint.nominal <= joint.domain[1]:
+        yield f"joint {joint.name!r}: its nominal value {joint.nominal:g} is outside its domain {joint.domain}"
+    if joint.pitch != 0 and joint.limit_range is None:
+        yield f"joint {joint.name!r} carries a pitch: it needs a limit_range"
+    earlier = mechanism.joints[: mechanism.joints.index(joint)]
+    motors = {other.motor for other in earlier} | _parameters(mechanism)
+    yield from _unknown(f"coupling of joint {joint.name!r}", joint.coupling, motors, "the motor of an earlier joint")
+    yield from _unknown(f"pitch of joint {joint.name!r}", joint.pitch, _parameters(mechanism), "a parameter")
+
+
+def _periods(mechanism: Mechanism) -> Iterator[str]:
+    if mechanism.periods is None:
+        return
+    turning = [j.name for j in mechanism.joints if j.multi_turn]
+    for name in mechanism.periods:
+        if name not in turning:
+            yield f"periods names {name!r}, which is no multi-turn joint of this mechanism"
+    if sorted(mechanism.periods) != sorted(turning):
+        yield f"periods must name every multi-turn joint once: {', '.join(turning)}"
+
+
+def _shape(mechanism: Mechanism) -> Iterator[str]:
+    if (mechanism.chain is None) == (not mechanism.closure):
+        yield "the mechanism needs either a chain or closure equations"
+    if mechanism.task.position not in ("xy", "xyz"):
+        yield f"the task commands {mechanism.task.position!r}: it must be 'xy' or 'xyz'"
+    used = {s for _, e in _equations(mechanism) for s in e.free_symbols}
+    for joint in mechanism.joints:
+        if joint.symbol not in used:
+            yield f"joint {joint.name!r} occurs nowhere in the closure"
+
+
+def _equations(mechanism: Mechanism) -> Expressions:
+    if mechanism.chain is not None:
+        return tuple(("chain", factor.amount) for factor in mechanism.chain.factors)
+    return tuple(("closure", sp.sympify(equation)) for equation in mechanism.closure)
+
+
+def _symbols(mechanism: Mechanism) -> Iterator[str]:
+    joints = {j.symbol for j in mechanism.joints}
+    known = joints | _parameters(mechanism)
+    if mechanism.chain is None:
+        known |= {quantity.symbol for quantity in (X, Y, Z)}
+    named = [
+        *_equations(mechanism),
+        *((f"branch {b.name!r}", b.indicator) for b in mechanism.branches),
+        *(("positive", sp.sympify(e)) for e in mechanism.positive),
+        *((f"limited quantity {q.name!r}", q.value) for q in mechanism.limited),
+    ]
+    for place, expression in named:
+        yield from _unknown(place, expression, known, "a joint or a parameter of this mechanism")
+    for branch in mechanism.branches:
+        if not joints & branch.indicator.free_symbols:
+            yield f"branch {branch.name!r}: its indicator {branch.indicator} depends on no joint"
+
+
+def _constraints(mechanism: Mechanism) -> Iterator[str]:
+    nominal = {p.name: p.nominal for p in mechanism.parameters}
+    names = {p.name for p in mechanism.parameters}
+    for constraint in mechanism.constraints:
+        strange = sorted(s.name for s in constraint.condition.free_symbols if s.name not in names)
+        if strange:
+            yield f"constraint {constraint.message!r} reads {strange[0]!r}, which is no parameter of this mechanism"
+        values = {s: nominal.get(s.name, 0.0) for s in constraint.condition.free_symbols}
+        if constraint.condition.subs(values) != sp.true:
+            yield f"the nominal parameters break the constraint {constraint.message!r}"
+
+
+def _parameters(mechanism: Mechanism) -> set[sp.Basic]:
+    return {p.symbol for p in mechanism.parameters}
+
+
+def _unknown(place: str, expression: sp.Basic, known: Iterable[sp.Basic], wanted: str) -> Iterator[str]:
+    strange = expression.free_symbols - set(known) - {DEGREE}
+    for symbol in sorted(strange, key=str):
+        yield f"{place} reads {str(symbol)!r}, which is not {wanted}"

@@ -1,0 +1,101 @@
+"""What the witness compares: each check measures one derived program against the closure, or raises `Disagreement`.
+
+Errors are dimensionless: angles in radians, lengths in reaches of the machine.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.kinematics import Kinematics
+from derive.program import Program, Status
+from derive.run import Array, run
+from derive.witness.closure import POSE, Closure
+from derive.witness.disagreement import Disagreement
+from derive.witness.samples import Samples, describe
+
+CLOSURE_TOLERANCE = 1e-12
+JACOBIAN_TOLERANCE = 1e-10
+MARGIN_TOLERANCE = 1e-9
+CLEAR = 0.05
+"""Margins smaller than this are not asked for their sign."""
+
+
+def worst(kin: Kinematics, what: str, errors: Array, samples: Samples, tolerance: float) -> float:
+    """The largest error, if it is within the tolerance."""
+    errors = np.where(np.isfinite(errors), errors, np.inf)
+    row = int(np.argmax(errors))
+    if errors[row] > tolerance:
+        place = describe(kin, samples, row)
+        raise Disagreement(f"{what}: error {errors[row]:.1e}, allowed {tolerance:.0e}, {place}")
+    return float(errors[row])
+
+
+def run_regular(kin: Kinematics, program: Program, samples: Samples) -> dict[str, Array]:
+    """The outputs of a program that must accept every regular sample."""
+    outputs, status = run(program, samples.values)
+    refused = np.flatnonzero(np.broadcast_to(status != Status.OK, len(samples)))
+    if len(refused):
+        raise Disagreement(f"{program.name} refuses a regular pose: {describe(kin, samples, int(refused[0]))}")
+    return outputs
+
+
+def displacement(closure: Closure, samples: Samples, joints: Array) -> Array:
+    """How far the pose would have to move to close Φ at the joints: |A⁺ Φ|."""
+    state = (joints, samples.pose, samples.parameters)
+    scaled = closure.by_pose(*state) * closure.row_scale(samples.reach)[:, None, :]
+    return np.asarray(np.linalg.norm((np.linalg.pinv(scaled) @ closure.residual(*state))[:, :, 0], axis=1))
+
+
+def check_forward(kin: Kinematics, closure: Closure, samples: Samples) -> float:
+    """Forward kinematics closes Φ and gives the whole frame; `orientation` gives the same rotation."""
+    frame = closure.frame(samples.joints, samples.parameters)[:, :, 0]
+    position = (samples.pose[:, :3] - frame[:, :3]) / samples.reach[:, None]
+    if kin.mechanism.chain is None:  # closure equations speak of the commanded position: `displacement` measures it
+        position[:, : len(kin.mechanism.task.position)] = 0.0
+    outputs = run_regular(kin, kin.orientation, samples)
+    rotation = np.stack([outputs[name] for name in POSE[3:]], axis=1)
+    parts = (
+        displacement(closure, samples, samples.joints),
+        np.max(np.abs(position), axis=1),
+        np.max(np.abs(samples.pose[:, 3:] - frame[:, 3:]), axis=1),
+        np.max(np.abs(rotation - frame[:, 3:]), axis=1),
+    )
+    return worst(kin, "forward kinematics", np.max(parts, axis=0), samples, CLOSURE_TOLERANCE)
+
+
+def check_jacobian(kin: Kinematics, closure: Closure, samples: Samples) -> float:
+    """The derived Jacobian is the closure's own, entry by entry, relative to the largest of its row."""
+    if kin.rows != closure.task:
+        raise Disagreement(f"the Jacobian has the rows {kin.rows}, the task {closure.task}")
+    outputs = run_regular(kin, kin.jacobian, samples)
+    rows, columns = samples.jacobian.shape[1:]
+    derived = np.stack([np.stack([outputs[f"j{i + 1}{k + 1}"] for k in range(columns)], axis=1) for i in range(rows)], axis=1)
+    sizes = np.max(np.abs(samples.jacobian), axis=2, keepdims=True)
+    errors = np.max(np.abs(derived - samples.jacobian) / sizes, axis=(1, 2))
+    return worst(kin, "Jacobian", errors, samples, JACOBIAN_TOLERANCE)
+
+
+def check_margins(kin: Kinematics, closure: Closure, samples: Samples) -> float:
+    """√det(J Jᵀ) is one constant of each machine times the margins with their exponents; their signs are the branches'."""
+    _check_signs(kin, closure, samples)
+    outputs = run_regular(kin, kin.singularity, samples)
+    expected = np.ones(len(samples))
+    for margin in kin.margins:
+        expected = expected * np.abs(outputs[margin.name]) ** margin.exponent
+    j = samples.jacobian if samples.jacobian.shape[1] <= samples.jacobian.shape[2] else np.swapaxes(samples.jacobian, 1, 2)
+    ratio = np.sqrt(np.linalg.det(j @ np.swapaxes(j, 1, 2))) / expected
+    constant = {m: np.median(ratio[samples.machine == m]) for m in np.unique(samples.machine)}
+    errors = np.abs(ratio / np.array([constant[m] for m in samples.machine]) - 1.0)
+    return worst(kin, "singularity margins against det J", errors, samples, MARGIN_TOLERANCE)
+
+
+def _check_signs(kin: Kinematics, closure: Closure, samples: Samples) -> None:
+    indicators = closure.indicators(samples.joints, samples.pose, samples.parameters)[:, :, 0]
+    for i, branch in enumerate(kin.branches):
+        margin = samples.values[f"branch_{branch.name}"]
+        differ: NDArray[np.bool_] = (margin * indicators[:, i] <= 0) & (np.abs(margin) > CLEAR)
+        if differ.any():
+            place = describe(kin, samples, int(np.argmax(differ)))
+            raise Disagreement(f"branch {branch.name!r} has the opposite sign of its indicator {place}")

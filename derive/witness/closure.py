@@ -1,0 +1,177 @@
+"""The closure equations of a mechanism as CasADi functions, built from its description alone.
+
+Nothing here knows a derived formula: a chain is multiplied out factor by factor, closure equations are
+read as they stand, and every derivative is automatic differentiation. Functions work on rows of samples.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from derive.frames import Chain, Motion
+from derive.mechanism import Mechanism, Turning, X, Y, Z
+from derive.program import DEGREE
+from derive.run import Array
+from derive.witness.terms import Term, term
+
+POSE = ("x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123"))
+"""The columns of a pose: position, then rotation by rows."""
+
+
+class Rows:
+    """A CasADi function over rows of samples: (samples, size) arrays in, (samples, rows, columns) out."""
+
+    def __init__(self, name: str, arguments: tuple[Term, ...], result: Term) -> None:
+        self._shape = result.shape
+        self._function = ca.Function(name, arguments, [ca.densify(result)])
+        self._mapped: dict[int, Any] = {}
+
+    def __call__(self, *columns: Array) -> Array:
+        count = len(columns[0])
+        if count not in self._mapped:
+            self._mapped[count] = self._function.map(count)
+        result = self._mapped[count](*(ca.DM(c.T) for c in columns)).full()
+        rows, width = self._shape
+        return np.moveaxis(result.reshape(rows, count, width), 1, 0)
+
+
+@dataclass(frozen=True)
+class Closure:
+    """Φ(q, pose; p) = 0 of one mechanism: q are joint values in radians and lengths, p its parameters."""
+
+    joints: Rows
+    """axes (interface units), parameters → joint values"""
+    gearing: Rows
+    """axes, parameters → ∂ joints / ∂ axes, per radian"""
+    residual: Rows
+    """joints, pose, parameters → Φ; the first `equations` rows are lengths or the like, the others rotation entries"""
+    by_pose: Rows
+    """joints, pose, parameters → A = ∂Φ/∂pose along twists, one column per row of the task"""
+    by_joints: Rows
+    """joints, pose, parameters → B = ∂Φ/∂q"""
+    frame: Rows
+    """joints, parameters → the pose of a chain; of closure equations: what they leave fixed, position zero"""
+    positive: Rows
+    """joints, pose, parameters → the quantities that are positive in this machine"""
+    indicators: Rows
+    """joints, pose, parameters → branch indicators, positive = byte 1"""
+    equations: int
+    task: tuple[str, ...]
+    """The rows of the task, as the Jacobian names them."""
+    parameters: tuple[str, ...]
+    """The columns of the parameters: those of the description, then the offsets."""
+    angles: NDArray[np.bool_]
+    """Which joints are angles."""
+
+    def row_scale(self, reach: Array) -> Array:
+        """What one unit of each task row is, where lengths are measured in reaches."""
+        return np.where([row.startswith("turn ") for row in self.task], 1.0, reach[:, None])
+
+    def joint_scale(self, reach: Array) -> Array:
+        """The same of the joints, in radians and lengths."""
+        return np.where(self.angles, 1.0, reach[:, None])
+
+    def axis_scale(self, reach: Array) -> Array:
+        """The same of the axes, in degrees and lengths."""
+        return np.where(self.angles, np.degrees(1.0), reach[:, None])
+
+
+def closure_of(mechanism: Mechanism) -> Closure:
+    """Read the description into CasADi."""
+    count = len(mechanism.joints)
+    q, axes, pose = ca.SX.sym("q", count), ca.SX.sym("axes", count), ca.SX.sym("pose", len(POSE))
+    constants = [p.symbol for p in mechanism.parameters] + [j.offset for j in mechanism.joints]
+    p = ca.SX.sym("p", len(constants))
+    known = {symbol: p[i] for i, symbol in enumerate(constants)}
+    known |= {joint.symbol: q[i] for i, joint in enumerate(mechanism.joints)}
+    task = task_rows(mechanism)
+    twist = ca.SX.sym("twist", len(task))
+    moved = _moved(pose, task, twist)
+    joints = _joint_values(mechanism, axes, known)
+    residual, equations = _residual(mechanism, known, moved)
+    units = ca.vertcat(*(float(j.unit.subs(DEGREE, sp.pi / 180)) for j in mechanism.joints))
+    at_rest = ca.substitute([residual, ca.jacobian(residual, twist)], [twist], [ca.SX.zeros(len(task))])
+    named = known | _position_symbols(pose)
+    state = (q, pose, p)
+    return Closure(
+        joints=Rows("joints", (axes, p), joints),
+        gearing=Rows("gearing", (axes, p), ca.jacobian(joints, axes) @ ca.diag(1 / units)),
+        residual=Rows("residual", state, at_rest[0]),
+        by_pose=Rows("by_pose", state, at_rest[1]),
+        by_joints=Rows("by_joints", state, ca.jacobian(at_rest[0], q)),
+        frame=Rows("frame", (q, p), _frame(mechanism.chain, known)),
+        positive=Rows("positive", state, _column([term(sp.sympify(e), named) for e in mechanism.positive])),
+        indicators=Rows("indicators", state, _column([b.signs[0] * term(b.indicator, named) for b in mechanism.branches])),
+        equations=equations,
+        task=task,
+        parameters=tuple(s.name for s in constants),
+        angles=np.array([j.is_angle for j in mechanism.joints]),
+    )
+
+
+def task_rows(mechanism: Mechanism) -> tuple[str, ...]:
+    """The commanded directions: what the rows of the Jacobian must be."""
+    return (*mechanism.task.position, *(("turn z",) if mechanism.task.turning is Turning.ABOUT_Z else ()))
+
+
+def _column(terms: list[Term]) -> Term:
+    return ca.vertcat(*terms) if terms else ca.SX.zeros(0, 1)
+
+
+def _position_symbols(pose: Term) -> dict[sp.Symbol, Term]:
+    return {quantity.symbol: pose[i] for i, quantity in enumerate((X, Y, Z))}
+
+
+def _joint_values(mechanism: Mechanism, axes: Term, known: dict[sp.Symbol, Term]) -> Term:
+    """Joint = motor + coupling of the motors, motor = axis - offset, in radians and lengths."""
+    motors = [(axes[i] - known[j.offset]) * term(j.unit, {}) for i, j in enumerate(mechanism.joints)]
+    named = known | {j.motor: motors[i] for i, j in enumerate(mechanism.joints)}
+    return ca.vertcat(*(motors[i] + term(j.coupling, named) for i, j in enumerate(mechanism.joints)))
+
+
+def _moved(pose: Term, task: tuple[str, ...], twist: Term) -> Term:
+    """The pose moved by a small twist: p + v, (I + [ω]) R."""
+    shift, spin = [ca.SX(0)] * 3, [ca.SX(0)] * 3
+    for i, row in enumerate(task):
+        (spin if row.startswith("turn ") else shift)["xyz".index(row[-1])] = twist[i]
+    rotation = ca.reshape(pose[3:], 3, 3).T
+    turned = rotation + ca.skew(ca.vertcat(*spin)) @ rotation
+    return ca.vertcat(pose[:3] + ca.vertcat(*shift), ca.reshape(turned.T, 9, 1))
+
+
+def _residual(mechanism: Mechanism, known: dict[sp.Symbol, Term], pose: Term) -> tuple[Term, int]:
+    """Φ, and how many of its rows come before the rotation's."""
+    if mechanism.chain is None:
+        named = known | _position_symbols(pose)
+        return _column([term(sp.sympify(e), named) for e in mechanism.closure]), len(mechanism.closure)
+    difference = _frame(mechanism.chain, known) - pose
+    count = len(mechanism.task.position)
+    follows = mechanism.task.turning is not Turning.NONE
+    return (ca.vertcat(difference[:count], difference[3:]) if follows else difference[:count]), count
+
+
+def _frame(chain: Chain | None, known: dict[sp.Symbol, Term]) -> Term:
+    """The frame at the end of the chain, multiplied out factor by factor."""
+    position, rotation = ca.SX.zeros(3), ca.SX.eye(3)
+    for factor in chain.factors if chain else ():
+        amount = term(factor.amount, known)
+        if factor.motion is Motion.SHIFT:
+            position = position + rotation[:, factor.axis] * amount
+        elif factor.motion is Motion.TURN:
+            rotation = rotation @ _turn(factor.axis, ca.cos(amount), ca.sin(amount))
+        else:
+            rotation = rotation @ _turn(factor.axis, 1 - 2 * amount, 0)
+    return ca.vertcat(position, ca.reshape(rotation.T, 9, 1))
+
+
+def _turn(axis: int, cosine: Term, sine: Term) -> Term:
+    """Rodrigues' formula about a coordinate axis."""
+    direction = ca.DM.zeros(3)
+    direction[axis] = 1
+    return cosine * ca.SX.eye(3) + sine * ca.skew(direction) + (1 - cosine) * (direction @ direction.T)

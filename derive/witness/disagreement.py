@@ -1,0 +1,5 @@
+"""What the witness says when a derived formula is wrong."""
+
+
+class Disagreement(Exception):
+    """A derived quantity contradicts the closure equations; the message says which, and where."""

@@ -1,0 +1,152 @@
+"""The inverse against the closure: every slot is a solution, forward's slot is the way back, and none is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.kinematics import Kinematics
+from derive.program import Program, Status
+from derive.run import Array, run
+from derive.witness.checks import CLEAR, CLOSURE_TOLERANCE, displacement, worst
+from derive.witness.closure import Closure
+from derive.witness.disagreement import Disagreement
+from derive.witness.roots import Problem, all_solutions, distinct, problem_at, same, within_one_turn
+from derive.witness.samples import SEED, Samples, describe
+
+AXES_TOLERANCE = 1e-9
+_NEAR = 15.0
+"""How far references stray from the axes, in degrees: near enough for gear couplings not to change the turn."""
+_TOOL = 0.03
+"""The size of the point off the flange, in reaches: less than REGULAR, so that it does not reach a mirror solution."""
+
+Slots = tuple[Array, NDArray[np.bool_]]
+"""Axis values (slots, samples, axes) and whether each slot answered OK."""
+
+
+def check_inverse(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[float, float]:
+    """Every slot's answer closes Φ and lies on its branch; the slot that forward names gives the axes back, turns included."""
+    axes, ok = run_slots(kin, kin.branch, samples, _commands(kin, samples))
+    residual = 0.0
+    for slot, signs in enumerate(_signs(kin)):
+        chosen = np.flatnonzero(ok[slot])
+        if not len(chosen):
+            continue
+        part = samples.take(chosen)
+        joints = closure.joints(axes[slot, chosen], part.parameters)[:, :, 0]
+        residual = max(residual, worst(kin, "inverse kinematics", displacement(closure, part, joints), part, CLOSURE_TOLERANCE))
+        indicators = closure.indicators(joints, part.pose, part.parameters)[:, :, 0]
+        if (indicators * signs <= 0).any():
+            place = describe(kin, part, int(np.argmax(np.any(indicators * signs <= 0, axis=1))))
+            raise Disagreement(f"inverse kinematics: slot {slot} answers on another branch, for the pose {place}")
+    return residual, _round_trip(kin, closure, samples, (axes, ok), samples.values, "the way back")
+
+
+def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> int:
+    """Multi-start root finding finds what the slots hold, no more and no less; the largest number of solutions."""
+    first = np.unique(samples.machine, return_index=True)[1]
+    part = samples.take(first)
+    problem = problem_at(closure, part)
+    axes, ok = run_slots(kin, kin.branch, part, _commands(kin, part))
+    offered = [within_one_turn(problem, closure.joints(a, part.parameters)[:, :, 0] / problem.units) for a in axes]
+    counts = []
+    for row, found in enumerate(all_solutions(problem)):
+        slots = np.array([offered[slot][row] for slot in np.flatnonzero(ok[:, row])]).reshape(-1, axes.shape[2])
+        _compare(kin, problem, (found, slots), describe(kin, part, row))
+        counts.append(len(found))
+    return max(counts)
+
+
+def check_offset(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[float, float]:
+    """The offset interface puts the point where it is commanded, and gives the axes back on the branch it names."""
+    if kin.offset_branch is None or kin.offset_configuration is None:
+        return 0.0, 0.0
+    offset = _TOOL * samples.reach[:, None] * np.random.default_rng(SEED + 3).uniform(-1.0, 1.0, (len(samples), 3))
+    offset[:, len(kin.mechanism.task.position) :] = 0.0
+    rotation = samples.pose[:, 3:].reshape(-1, 3, 3)
+    point = samples.pose[:, :3] + (rotation @ offset[:, :, None])[:, :, 0]
+    named = {f"point_{c}": offset[:, i] for i, c in enumerate("xyz")} | {c: point[:, i] for i, c in enumerate("xyz")}
+    references = {j.reference.name: samples.axes[:, i] for i, j in enumerate(kin.mechanism.joints)}
+    turns = {j.turn.name: np.zeros(len(samples)) for j in kin.period_joints}
+    axes, ok = run_slots(kin, kin.offset_branch, samples, named | references | turns)
+    residual = 0.0
+    for slot in range(len(axes)):
+        chosen = np.flatnonzero(ok[slot])
+        if len(chosen):
+            part = samples.take(chosen)
+            joints = closure.joints(axes[slot, chosen], part.parameters)[:, :, 0]
+            errors = _point_error(kin, closure, part, joints, point[chosen], offset[chosen])
+            residual = max(residual, worst(kin, "offset interface", errors, part, CLOSURE_TOLERANCE))
+    branches, _ = run(kin.offset_configuration, samples.values | named)
+    return residual, _round_trip(kin, closure, samples, (axes, ok), branches, "the way back of the offset interface")
+
+
+def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dict[str, Array]) -> Slots:
+    """Run an inverse program for every slot."""
+    axes, ok = [], []
+    for signs in _signs(kin):
+        sigmas = {f"sigma_{b.name}": np.full(len(samples), s) for b, s in zip(kin.branches, signs, strict=True)}
+        outputs, status = run(program, samples.values | commands | sigmas)
+        axes.append(np.stack([outputs[j.axis.name] for j in kin.mechanism.joints], axis=1))
+        ok.append(np.asarray(np.broadcast_to(status == Status.OK, len(samples)), dtype=bool))
+    return np.array(axes), np.array(ok)
+
+
+def _signs(kin: Kinematics) -> list[tuple[float, ...]]:
+    """The branch signs of every slot, slot = Σ (byte - 1)·2^i."""
+    return [tuple(reversed(signs)) for signs in product((1.0, -1.0), repeat=len(kin.branches))]
+
+
+def _commands(kin: Kinematics, samples: Samples) -> dict[str, Array]:
+    """Turns and references that lead to the sampled axes: explicit turns on even rows, near references on odd ones."""
+    rng = np.random.default_rng(SEED + 2)
+    explicit = np.arange(len(samples)) % 2 == 0
+    commands = {}
+    for i, joint in enumerate(kin.mechanism.joints):
+        axis = samples.axes[:, i]
+        near = axis + rng.uniform(-_NEAR, _NEAR, len(samples))
+        anywhere = rng.uniform(-720.0, 720.0, len(samples))
+        commands[joint.reference.name] = np.where(explicit & joint.multi_turn, anywhere, near)
+        if joint.multi_turn:
+            count = np.floor((axis + 180.0) / 360.0)
+            commands[joint.turn.name] = np.where(explicit, np.where(count >= 0, count + 1, count), 0.0)
+    return commands
+
+
+def _round_trip(
+    kin: Kinematics, closure: Closure, samples: Samples, slots: Slots, branches: Mapping[str, Array], what: str
+) -> float:
+    """The error of the axes in the slot that the branch signs name, where they are clear."""
+    axes, ok = slots
+    slot, clear = np.zeros(len(samples), dtype=np.int64), np.ones(len(samples), dtype=bool)
+    for i, branch in enumerate(kin.branches):
+        margin = branches[f"branch_{branch.name}"]
+        slot += np.where(margin > 0, 0, 2**i)
+        clear &= np.abs(margin) > CLEAR
+    rows = np.arange(len(samples))
+    errors = np.max(np.abs(axes[slot, rows] - samples.axes) / closure.axis_scale(samples.reach), axis=1)
+    errors = np.where(ok[slot, rows], errors, np.inf)
+    if not clear.any():
+        raise Disagreement(f"{what}: no sample has clear branches")
+    return worst(kin, what, errors[clear], samples.take(clear), AXES_TOLERANCE)
+
+
+def _compare(kin: Kinematics, problem: Problem, solutions: tuple[Array, Array], place: str) -> None:
+    found, offered = solutions
+    missing = [f for f in found if not any(same(f, o, problem.angles) for o in offered)]
+    if missing or len(found) != len(offered) or len(distinct(offered, problem.angles)) != len(offered):
+        raise Disagreement(
+            f"number of solutions: the closure has {len(found)}, the slots hold {len(offered)}"
+            f" ({len(distinct(offered, problem.angles))} distinct), for the pose {place}"
+        )
+
+
+def _point_error(kin: Kinematics, closure: Closure, samples: Samples, joints: Array, point: Array, offset: Array) -> Array:
+    if kin.mechanism.chain is None:  # the flange keeps its orientation: the offset only shifts the pose
+        return displacement(closure, samples, joints)
+    frame = closure.frame(joints, samples.parameters)[:, :, 0]
+    reached = frame[:, :3] + (frame[:, 3:].reshape(-1, 3, 3) @ offset[:, :, None])[:, :, 0]
+    return np.asarray(np.linalg.norm(reached - point, axis=1) / samples.reach)

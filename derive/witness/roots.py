@@ -1,0 +1,113 @@
+"""All solutions of the closure for a pose, found by a damped Newton iteration from many starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.run import Array
+from derive.witness.closure import Closure
+from derive.witness.samples import SEED, Samples
+
+Rows = NDArray[np.int64]
+
+STARTS = 40
+_ITERATIONS = 40
+_POLISH = 4
+_CONVERGED = 1e-9
+_SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The closure at fixed poses, scaled: angles in radians, lengths in reaches, equations of order one."""
+
+    closure: Closure
+    pose: Array
+    parameters: Array
+    weights: Array
+    units: Array
+    """What one scaled unknown is in radians or lengths."""
+    angles: NDArray[np.bool_]
+
+    def take(self, rows: Rows) -> Problem:
+        """The problem at the chosen rows."""
+        return Problem(self.closure, self.pose[rows], self.parameters[rows], self.weights[rows], self.units[rows], self.angles)
+
+    def residual(self, unknowns: Array) -> Array:
+        """Φ."""
+        return self.weights * self.closure.residual(unknowns * self.units, self.pose, self.parameters)[:, :, 0]
+
+    def slopes(self, unknowns: Array) -> Array:
+        """∂Φ by the unknowns."""
+        b = self.closure.by_joints(unknowns * self.units, self.pose, self.parameters)
+        return np.asarray(self.weights[:, :, None] * b * self.units[:, None, :])
+
+    def is_positive(self, unknowns: Array) -> NDArray[np.bool_]:
+        """Whether the description admits the solution, or excludes it as a mirror image."""
+        quantities = self.closure.positive(unknowns * self.units, self.pose, self.parameters)[:, :, 0]
+        return np.asarray(np.all(quantities > 0, axis=1), dtype=bool)
+
+
+def problem_at(closure: Closure, samples: Samples) -> Problem:
+    """The root-finding problem at each sample."""
+    units = closure.joint_scale(samples.reach)
+    state = (samples.joints, samples.pose, samples.parameters)
+    by_pose = closure.by_pose(*state) * closure.row_scale(samples.reach)[:, None, :]
+    by_joints = closure.by_joints(*state) * units[:, None, :]
+    sizes = np.linalg.norm(np.concatenate([by_pose, by_joints], axis=2), axis=2)
+    sizes[:, closure.equations :] = 1.0  # entries of a rotation are of order one already
+    return Problem(closure, samples.pose, samples.parameters, 1.0 / sizes, units, closure.angles)
+
+
+def all_solutions(problem: Problem) -> list[Array]:
+    """The distinct solutions at every pose, less those that the description excludes."""
+    count = len(problem.pose)
+    rows = np.repeat(np.arange(count), STARTS)
+    many = problem.take(rows)
+    size = np.where(problem.angles, np.pi, 2.0)
+    starts = np.random.default_rng(SEED).uniform(-1.0, 1.0, (len(rows), len(size))) * size
+    ends = within_one_turn(many, _newton(many, starts, _ITERATIONS))
+    good = (np.linalg.norm(many.residual(ends), axis=1) < _CONVERGED) & many.is_positive(ends)
+    return [distinct(ends[(rows == i) & good], problem.angles) for i in range(count)]
+
+
+def within_one_turn(problem: Problem, unknowns: Array) -> Array:
+    """The same solutions with angles in [-π, π); what climbs with a turn follows by a few more steps."""
+    wrapped = np.where(problem.angles, (unknowns + np.pi) % (2 * np.pi) - np.pi, unknowns)
+    return _newton(problem, wrapped, _POLISH)
+
+
+def distinct(unknowns: Array, angles: NDArray[np.bool_]) -> Array:
+    """Each solution once."""
+    kept: list[Array] = []
+    for candidate in unknowns:
+        if not any(same(candidate, other, angles) for other in kept):
+            kept.append(candidate)
+    return np.array(kept).reshape(len(kept), len(angles))
+
+
+def same(one: Array, other: Array, angles: NDArray[np.bool_]) -> bool:
+    """Whether two solutions are one."""
+    apart = np.where(angles, np.abs(np.exp(1j * one) - np.exp(1j * other)), np.abs(one - other))
+    return bool(np.all(apart < _SAME))
+
+
+def _newton(problem: Problem, start: Array, iterations: int) -> Array:
+    """Levenberg-Marquardt, every row with its own damping."""
+    unknowns, damping = start, np.full(len(start), 1e-2)
+    residual = problem.residual(unknowns)
+    identity = np.eye(start.shape[1])
+    for _ in range(iterations):
+        slopes = problem.slopes(unknowns)
+        normal = np.swapaxes(slopes, 1, 2) @ slopes + damping[:, None, None] * identity
+        step = np.linalg.solve(normal, np.swapaxes(slopes, 1, 2) @ residual[:, :, None])[:, :, 0]
+        trial = unknowns - step
+        after = problem.residual(trial)
+        better = np.linalg.norm(after, axis=1) < np.linalg.norm(residual, axis=1)
+        unknowns = np.where(better[:, None], trial, unknowns)
+        residual = np.where(better[:, None], after, residual)
+        damping = np.clip(np.where(better, damping * 0.1, damping * 10.0), 1e-15, 1e6)
+    return unknowns

@@ -1,0 +1,177 @@
+"""The machines and poses on which the witness looks: the nominal machine, random ones, regular poses of each.
+
+Everything is drawn from a fixed seed, so that a build says the same every time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from derive.kinematics import Kinematics
+from derive.mechanism import Joint, Mechanism, Parameter, Role
+from derive.program import Status
+from derive.run import Array, run
+from derive.witness.closure import POSE, Closure
+from derive.witness.disagreement import Disagreement
+
+SEED = 20260
+MACHINES = 6
+POSES = 24
+"""Regular poses of each machine."""
+REGULAR = 0.05
+"""The least singular value of the scaled Jacobian at a regular pose."""
+WITHOUT_LENGTHS = 500.0
+"""The reach assumed of a machine that has no lengths (a gantry)."""
+_CANDIDATES = 100
+_SPREAD = {Role.PITCH: 20.0, Role.GEAR: 0.1, Role.COUPLING: 0.5, Role.ANGLE: 200.0}
+"""How far a parameter strays whose nominal value is zero."""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Rows of samples, ordered by machine: what the programs read, and the same as arrays."""
+
+    values: dict[str, Array]
+    """Everything that programs read by name: parameters, constants, axis values, the pose."""
+    machine: NDArray[np.int64]
+    parameters: Array
+    axes: Array
+    joints: Array
+    pose: Array
+    reach: Array
+    """A length of the size of the machine."""
+    jacobian: Array
+    """∂ task / ∂ axes per radian, by automatic differentiation of the closure."""
+
+    def __len__(self) -> int:
+        return len(self.axes)
+
+    def take(self, chosen: NDArray[np.bool_] | NDArray[np.int64]) -> Samples:
+        """The chosen rows."""
+        rows = {f: getattr(self, f)[chosen] for f in ("machine", "parameters", "axes", "joints", "pose", "reach", "jacobian")}
+        return replace(self, values={k: v[chosen] for k, v in self.values.items()}, **rows)
+
+
+def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
+    """Regular poses of the nominal and of several random machines."""
+    rng = np.random.default_rng(SEED)
+    machines = _machines(kin, rng)
+    count = len(next(iter(machines.values())))
+    machine = np.repeat(np.arange(count), _CANDIDATES)
+    values = {name: column[machine] for name, column in machines.items()}
+    reach = _reach(kin.mechanism, values)
+    axes = _axes(kin.mechanism, values, reach, rng)
+    values |= {j.axis.name: axes[:, i] for i, j in enumerate(kin.mechanism.joints)}
+    parameters = np.stack([values[name] for name in closure.parameters], axis=1)
+    joints = closure.joints(axes, parameters)[:, :, 0]
+    outputs, status = run(kin.forward, values)
+    values |= outputs
+    pose = np.stack([outputs[name] for name in POSE], axis=1)
+    samples = Samples(values, machine, parameters, axes, joints, pose, reach, np.empty(len(axes)))
+    inside = _inside(kin.mechanism, closure, samples)
+    if refused := np.flatnonzero(inside & (status != Status.OK) & (kin.mechanism.chain is not None)).tolist():
+        raise Disagreement(f"forward kinematics refuses a possible pose: {describe(kin, samples, refused[0])}")
+    samples = replace(samples, jacobian=jacobian_of(closure, samples))
+    regular = inside & (status == Status.OK) & (_least_singular_value(closure, samples) > REGULAR)
+    chosen = np.flatnonzero(regular & (_rank_within(machine, regular) <= POSES))
+    if len(np.unique(machine[chosen])) < count:
+        raise Disagreement("a machine has no regular pose: is the mechanism always singular?")
+    return samples.take(chosen)
+
+
+def jacobian_of(closure: Closure, samples: Samples) -> Array:
+    """J = -A⁻¹ B, by least squares where Φ has more rows than the task."""
+    state = (samples.joints, samples.pose, samples.parameters)
+    a, b = closure.by_pose(*state), closure.by_joints(*state)
+    return np.asarray(-np.linalg.pinv(a) @ b @ closure.gearing(samples.axes, samples.parameters))
+
+
+def describe(kin: Kinematics, samples: Samples, row: int) -> str:
+    """One sample, for a message."""
+    axes = ", ".join(f"{j.name}={samples.axes[row, i]:.6g}" for i, j in enumerate(kin.mechanism.joints))
+    machine = ", ".join(f"{p.name}={samples.values[p.name][row]:.6g}" for p in kin.mechanism.parameters)
+    return f"at {axes}" + (f" of the machine {machine}" if machine else "")
+
+
+def _machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
+    """Parameters and constants of the machines that `setup` accepts, the nominal one first."""
+    count = 8 * MACHINES
+    names = {p.name for p in kin.mechanism.parameters} | {j.offset.name for j in kin.mechanism.joints}
+    values = {}
+    for parameter in kin.parameters:
+        drawn = _draw(parameter, count, rng) if parameter.name in names else np.full(count, parameter.nominal)
+        drawn[0] = parameter.nominal
+        values[parameter.name] = drawn
+    values.setdefault("", np.zeros(count))  # a machine without parameters still has rows
+    constants, status = run(kin.setup, values)
+    if status[0] != Status.OK:
+        raise Disagreement("Initialize refuses the nominal parameters")
+    accepted = np.flatnonzero(status == Status.OK)[:MACHINES]
+    return {name: column[accepted] for name, column in (values | constants).items()}
+
+
+def _draw(parameter: Parameter, count: int, rng: Generator) -> Array:
+    """Random values of one parameter; what has a default keeps it in half of the machines."""
+    low, high = max(parameter.low, -1e3), min(parameter.high, 1e3)
+    size = abs(parameter.nominal) or _SPREAD.get(parameter.role, 50.0)
+    if parameter.role is Role.LENGTH:
+        drawn = parameter.nominal * rng.uniform(0.5, 1.5, count)
+    elif parameter.role is Role.FLAG:
+        drawn = np.ones(count)
+    elif parameter.role is Role.SIGN:
+        drawn = -np.ones(count)
+    else:
+        drawn = parameter.nominal + size * rng.uniform(-1.0, 1.0, count)
+    drawn = np.clip(drawn, low, high)
+    return drawn if parameter.default is None else np.where(rng.random(count) < 0.5, parameter.default, drawn)
+
+
+def _reach(mechanism: Mechanism, values: dict[str, Array]) -> Array:
+    lengths = [np.abs(values[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
+    total = np.sum(lengths, axis=0) if lengths else np.zeros_like(next(iter(values.values())))
+    return np.where(total > 0, total, WITHOUT_LENGTHS)
+
+
+def _axes(mechanism: Mechanism, values: dict[str, Array], reach: Array, rng: Generator) -> Array:
+    """Random axis values: several turns where the axis has a period, the reach where it is linear."""
+    columns = []
+    for joint in mechanism.joints:
+        size = reach if not joint.is_angle else 540.0 if joint.multi_turn else 175.0
+        low, high = joint.domain or (-np.inf, np.inf)
+        drawn = rng.random(len(reach))
+        motor = np.maximum(-size, low) * (1 - drawn) + np.minimum(size, high) * drawn
+        columns.append(motor + (0.0 if joint.multi_turn else values[joint.offset.name]))
+    return np.stack(columns, axis=1)
+
+
+def _inside(mechanism: Mechanism, closure: Closure, samples: Samples) -> NDArray[np.bool_]:
+    """Whether joints keep to their domains and the positive quantities are positive."""
+    inside = np.all(closure.positive(samples.joints, samples.pose, samples.parameters)[:, :, 0] > 0, axis=1)
+    for i, joint in enumerate(mechanism.joints):
+        low, high = joint.domain or (-np.inf, np.inf)
+        value = samples.joints[:, i] / _unit(joint)
+        inside &= (value >= low) & (value <= high)
+    return np.asarray(inside, dtype=bool)
+
+
+def _unit(joint: Joint) -> float:
+    """One unit of the axis in radians or lengths."""
+    return np.pi / 180.0 if joint.is_angle else 1.0
+
+
+def _least_singular_value(closure: Closure, samples: Samples) -> Array:
+    """Of the Jacobian with lengths measured in reaches: small near a singularity of either type."""
+    columns, rows = closure.joint_scale(samples.reach), closure.row_scale(samples.reach)
+    scaled = np.nan_to_num(samples.jacobian * columns[:, None, :] / rows[:, :, None], posinf=0.0, neginf=0.0)
+    return np.asarray(np.linalg.svd(scaled, compute_uv=False)[:, -1])
+
+
+def _rank_within(group: NDArray[np.int64], chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The how-manieth chosen row of its group a row is, from 1."""
+    total = np.cumsum(chosen)
+    before = np.array([total[group == g][0] - chosen[group == g][0] for g in np.unique(group)])
+    return np.asarray(total - before[group])
