@@ -1,0 +1,1 @@
+"""Languages: a printer spells expressions, a template arranges text, neither computes."""

@@ -1,0 +1,145 @@
+"""Expressions as text: one walk for every language, which differ in spelling only.
+
+Both languages evaluate in the same order, so that their results agree to the last digit wherever their
+elementary functions do.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+
+import sympy as sp
+from sympy.core.relational import Relational
+
+from derive.program import DEGREE, Atan2, NearestOnArc, NearestPeriod, Root, Select
+
+_OR, _AND, _COMPARE, _SUM, _PRODUCT, _UNARY, _ATOM = range(7)
+
+FUNCTION_KEYS: dict[type[sp.Basic], str] = {
+    sp.sin: "sin",
+    sp.cos: "cos",
+    sp.Abs: "abs",
+    Root: "root",
+    Atan2: "atan2",
+    Select: "select",
+    NearestPeriod: "nearest_period",
+    NearestOnArc: "nearest_on_arc",
+}
+"""The neutral name of every primitive: the rows of a language's table."""
+
+
+class ExpressionPrinter(ABC):
+    """Spell an expression in a language. Subclasses spell names, numbers, calls and logical words."""
+
+    @abstractmethod
+    def name(self, symbol: sp.Symbol) -> str:
+        """A symbol's spelling."""
+
+    @abstractmethod
+    def number(self, value: float) -> str:
+        """A real literal."""
+
+    @abstractmethod
+    def call(self, key: str, arguments: Sequence[str]) -> str:
+        """A primitive applied to printed arguments; `key` is a value of `FUNCTION_KEYS`."""
+
+    @abstractmethod
+    def logic(self, word: str) -> str:
+        """The spelling of "and", "or", "true", "false"."""
+
+    def print(self, expression: sp.Basic) -> str:
+        """The expression as text."""
+        return self._text(expression, _OR)
+
+    def _text(self, node: sp.Basic, context: int) -> str:
+        text, level = self._spell(node)
+        return f"({text})" if level < context else text
+
+    def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if node in (sp.true, sp.false):
+            return self.logic("true" if node == sp.true else "false"), _ATOM
+        if node == DEGREE or isinstance(node, sp.Symbol):
+            return self.name(node), _ATOM
+        if isinstance(node, sp.Number):
+            return self._number(node)
+        if isinstance(node, sp.Add):
+            return self._sum(node), _SUM
+        if isinstance(node, sp.Mul | sp.Pow):
+            return self._product(node)
+        if isinstance(node, Relational):
+            return f"{self._text(node.lhs, _SUM)} {node.rel_op} {self._text(node.rhs, _SUM)}", _COMPARE
+        if isinstance(node, sp.And):
+            return self._joined(node, "and", _COMPARE), _AND
+        if isinstance(node, sp.Or):
+            return self._joined(node, "or", _AND), _OR
+        key = FUNCTION_KEYS[type(node)]
+        return self.call(key, [self._text(a, _OR) for a in node.args]), _ATOM
+
+    def _joined(self, node: sp.Basic, word: str, context: int) -> str:
+        # Comparisons are parenthesised in both languages: a reader need not know their precedence.
+        parts = [f"({self._text(a, _OR)})" for a in sp.ordered(node.args)]
+        return f" {self.logic(word)} ".join(parts)
+
+    def _number(self, node: sp.Number) -> tuple[str, int]:
+        value = float(node)
+        text = self.number(abs(value))
+        return (f"-{text}", _UNARY) if value < 0 else (text, _ATOM)
+
+    def _sum(self, node: sp.Add) -> str:
+        terms = sorted(node.as_ordered_terms(), key=_term_order)  # stable: among equals as SymPy orders them
+        text = self._text(terms[0], _SUM)
+        for term in terms[1:]:
+            if _is_negative(term):
+                text += f" - {self._text(-term, _PRODUCT)}"
+            else:
+                text += f" + {self._text(term, _PRODUCT)}"
+        return text
+
+    def _product(self, node: sp.Expr) -> tuple[str, int]:
+        coefficient, rest = node.as_coeff_Mul()
+        above, below = _fraction(rest)
+        numerator, denominator = sp.Rational(1), sp.Rational(1)
+        if isinstance(coefficient, sp.Rational):
+            numerator, denominator = sp.Integer(abs(coefficient.p)), sp.Integer(coefficient.q)
+            if denominator in (2, 4, 8, 16):
+                numerator, denominator = numerator / denominator, sp.Integer(1)
+        else:
+            numerator = abs(coefficient)
+        head = [] if numerator == 1 and above else [self.number(float(numerator))]
+        text = "*".join(head + [self._text(f, _UNARY) for f in above])
+        bottom = ([] if denominator == 1 else [self.number(float(denominator))]) + [
+            self._text(f, _UNARY) for f in below
+        ]
+        if bottom:
+            text += "/" + (bottom[0] if len(bottom) == 1 else f"({'*'.join(bottom)})")
+        return (f"-{text}", _SUM) if coefficient < 0 else (text, _PRODUCT)
+
+
+def _is_negative(term: sp.Expr) -> bool:
+    return bool(term.could_extract_minus_sign()) if not term.is_Add else False
+
+
+def _term_order(term: sp.Expr) -> tuple[bool, int]:
+    """Positive terms first, then the shorter: `link_length_1 + link_length_2*cos_a2`."""
+    return _is_negative(term), sum(len(side) for side in _fraction(term.as_coeff_Mul()[1]))
+
+
+def _factor_order(factor: sp.Expr) -> tuple[bool, str]:
+    """Sines and cosines last, as one writes them by hand."""
+    name = str(factor)
+    return name.startswith(("sin_", "cos_", "Sin", "Cos")), name
+
+
+def _fraction(node: sp.Expr) -> tuple[list[sp.Expr], list[sp.Expr]]:
+    """The factors above and below the line, integer powers written out."""
+    above: list[sp.Expr] = []
+    below: list[sp.Expr] = []
+    for factor in sorted(sp.Mul.make_args(node), key=_factor_order):
+        base, exponent = factor.as_base_exp()
+        if isinstance(factor, sp.Pow):
+            side = above if exponent > 0 else below
+            side.extend([base] * abs(int(exponent)))
+        elif factor != 1:
+            above.append(factor)
+    return above, below

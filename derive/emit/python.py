@@ -1,0 +1,163 @@
+"""Python: the package `softkin`, its runtime and one module a mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from textwrap import wrap
+
+from jinja2 import Environment
+
+from derive.emit import python_entries as entries
+from derive.emit import python_setup as setup
+from derive.emit.language import GENERATED, environment
+from derive.emit.python_layout import WIDTH, fold
+from derive.emit.python_methods import branch, forward, limits, methods
+from derive.emit.python_printer import ARRAY_NAMES, literal
+from derive.emit.python_program import Method, array_body, functions, scalar_body
+from derive.kinematics import Kinematics
+from derive.program import EDGE, FREE_ANGLE, LARGEST, SINGULAR, TIE, Status
+
+name = "python"
+
+_FIXED = (
+    "pyproject.toml",
+    "softkin/_array.py",
+    "softkin/_array_programs/__init__.py",
+    "softkin/_batch.py",
+    "softkin/_configuration.py",
+    "softkin/_core.py",
+    "softkin/_input.py",
+    "softkin/_offset.py",
+    "softkin/_scalar.py",
+    "softkin/_table.py",
+    "softkin/_twist.py",
+    "softkin/_types.py",
+    "softkin/py.typed",
+)
+"""Files that are the same whatever the mechanisms are."""
+_INDEXED = ("README.md", "softkin/__init__.py")
+"""Files that list the mechanisms."""
+_EXPORTS = (
+    "Axis", "ConfigurationByte", "Frame", "KinematicsError", "Mechanism", "OrientationImage", "Parameter",
+    "Singularity", "Solution", "Status", "catalogue",
+)  # fmt: skip
+_ARRAY_TYPES = ("Codes", "Programs", "Reals", "Rotation", "Vector", "passed", "require")
+_CHUNK = 8192
+"""Rows of a batch at a time: 64 KiB an array."""
+_MEANINGS = {
+    Status.OK: "no error",
+    Status.NOT_INITIALIZED: "a parameter is not allowed",
+    Status.BAD_INPUT: "numbers must be finite and at most 1e9 in size, and a rotation must be one",
+    Status.UNREACHABLE: "out of reach or beyond a limit",
+    Status.IMPOSSIBLE: "the mechanism cannot be assembled there, or a joint is undetermined",
+    Status.INVALID_COUPLING: "this pair of position and orientation kinematics is impossible",
+}
+
+
+def render(kinematics: Sequence[Kinematics]) -> dict[str, str]:
+    """All files of the package: path → text."""
+    templates = _templates()
+    index = [_index(kin) for kin in kinematics]
+    files = {path: templates.get_template(f"{path}.j2").render() for path in _FIXED}
+    index.sort(key=lambda entry: entry["module"])
+    exports = _sorted({*_EXPORTS, *(entry["class_name"] for entry in index)})
+    files |= {path: templates.get_template(f"{path}.j2").render(index=index, exports=exports) for path in _INDEXED}
+    for kin in kinematics:
+        files |= _mechanism(templates, kin)
+    return files
+
+
+def _templates() -> Environment:
+    templates = environment(name)
+    templates.filters |= {"fold": fold, "paragraph": _paragraph, "literal": entries.literal}
+    templates.globals |= {
+        "generated": GENERATED,
+        "statuses": [{"name": s.name, "softmotion": s.value, "meaning": _MEANINGS[s]} for s in Status],
+        "chunk": _CHUNK,
+        "edge": literal(float(EDGE)),
+        "free_angle": literal(float(FREE_ANGLE)),
+        "largest": literal(float(LARGEST)),
+        "singular": literal(float(SINGULAR)),
+        "tie": literal(float(TIE)),
+    }
+    return templates
+
+
+def _index(kin: Kinematics) -> dict[str, str]:
+    mechanism = kin.mechanism
+    return {
+        "name": mechanism.name,
+        "class_name": entries.class_name(mechanism.name, mechanism.class_name),
+        "module": entries.module_name(mechanism.name),
+        "summary": mechanism.summary,
+    }
+
+
+def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
+    """The class of a mechanism, and its programs on arrays."""
+    names = _index(kin)
+    scalar = methods(kin)
+    arrays = [forward(kin), branch(kin), limits(kin)]
+    programs = tuple(m.program for m in scalar) + (kin.setup,)
+    context = {
+        **names,
+        "kin": kin,
+        "mechanism": kin.mechanism,
+        "entries": entries,
+        "setup": setup,
+        "bases": _bases(kin),
+        "types": _types(kin, scalar),
+        "primitives": _without(functions(programs), "abs", "select"),
+        "margins": tuple(m.name for m in kin.margins),
+        "methods": [{"head": _head(m, "_"), "summary": m.summary, "body": scalar_body(m)} for m in scalar],
+    }
+    array_context = {
+        **names,
+        "imports": _sorted({*_ARRAY_TYPES, *(ARRAY_NAMES.get(f, f) for f in functions(tuple(m.program for m in arrays)))}),
+        "methods": [{"head": _array_head(m), "summary": m.summary, "body": array_body(m)} for m in arrays],
+    }
+    return {
+        f"softkin/{names['module']}.py": templates.get_template("mechanism.py.j2").render(context),
+        f"softkin/_array_programs/{names['module']}.py": templates.get_template("arrays.py.j2").render(array_context),
+    }
+
+
+def _bases(kin: Kinematics) -> dict[str, str]:
+    """The base classes by the module they are in: what the mechanism offers beyond the calls that all have."""
+    found = {"_offset": "OffsetKinematics"} if kin.offset_branch is not None else {}
+    found |= {"_twist": "TwistChoice"} if kin.projection is not None else {}
+    return found or {"_core": "Mechanism"}
+
+
+def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
+    kinds = {m.kind for m in used if m.kind} | {a.kind for m in used for a in m.arguments}
+    bytes_ = {"ConfigurationByte"} if kin.configuration_size else set()
+    return _sorted(kinds - {"Pose", "Image"} | {"Axis", "Parameter", "Status"} | bytes_)
+
+
+def _head(method: Method, prefix: str) -> list[str]:
+    arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
+    result = f"{method.kind} | Status" if method.kind else "Status"
+    return fold(f"def {prefix}{method.name}(self{arguments}) -> {result}:", 4)
+
+
+def _array_head(method: Method) -> list[str]:
+    arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
+    kind = "tuple[Vector, Rotation, Reals]" if method.kind == "Pose" else method.kind
+    result = f"tuple[{kind}, Codes]" if kind else "Codes"
+    return fold(f"def {method.name}(self{arguments}) -> {result}:", 4)
+
+
+def _without(found: Sequence[str], *unwanted: str) -> list[str]:
+    return [f for f in found if f not in unwanted]
+
+
+def _sorted(found: set[str]) -> list[str]:
+    """Constants, then classes, then functions."""
+    return sorted(found, key=lambda n: (not n.isupper(), n[0].islower(), n))
+
+
+def _paragraph(text: str, indent: int = 0) -> str:
+    """A text in lines of the usual width."""
+    space = " " * indent
+    return "\n".join(wrap(text, WIDTH, initial_indent=space, subsequent_indent=space))

@@ -1,0 +1,81 @@
+"""Which programs become which methods: the arguments they unpack and the shape of what they return."""
+
+from __future__ import annotations
+
+from derive.emit.python_program import Argument, Method, Shape
+from derive.kinematics import Kinematics
+
+POSITION: tuple[Shape, ...] = ("x", "y", "z")
+ROTATION: tuple[Shape, ...] = tuple(tuple(f"r{row}{column}" for column in "123") for row in "123")
+OFFSET: tuple[Shape, ...] = ("point_x", "point_y", "point_z")
+IMAGE: tuple[Shape, ...] = (
+    tuple(tuple(f"zero_r{row}{column}" for column in "123") for row in "123"),
+    ("rot_x", "rot_y", "rot_z"),
+    ("u_x", "u_y", "u_z"),
+)
+
+
+def methods(kin: Kinematics) -> list[Method]:
+    """The methods of the generated class that are programs, in the order of their use."""
+    axes = _axes(kin)
+    axis_values = axes.shape
+    measures = _measures(kin)
+    rows = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i, _ in enumerate(kin.rows, 1))
+    margins = tuple(m.name for m in kin.margins)
+    found = [
+        forward(kin),
+        Method("orientation", "The rotation of the frame.", kin.orientation, (axes,), "Rotation", ROTATION),
+        branch(kin),
+        limits(kin),
+        Method("singularity", "The margins, each zero at its singularity.", kin.singularity, (axes,), "Reals", margins),
+        Method("jacobian", "The Jacobian by rows, per radian.", kin.jacobian, (axes,), "Matrix", rows),
+        Method("image", "The orientations of the flange.", kin.image, (), "Image", IMAGE),
+    ]
+    rotation = Argument("rotation", "Rotation", ROTATION)
+    if kin.projection is not None:
+        text = "The nearest rotation that the flange can have."
+        found.append(Method("projection", text, kin.projection, (rotation,), "Rotation", ROTATION))
+    offset = Argument("offset", "Vector", OFFSET)
+    if kin.offset_branch is not None:
+        text = "The axes of one branch for a point off the flange."
+        arguments = (Argument("point", "Vector", POSITION), offset, *_choice(kin))
+        found.append(Method("offset_branch", text, kin.offset_branch, arguments, "Reals", axis_values))
+    if kin.offset_configuration is not None:
+        text = "The signed margin of every branch for a point off the flange."
+        found.append(Method("offset_measures", text, kin.offset_configuration, (axes, offset), "Reals", measures))
+    return found
+
+
+def forward(kin: Kinematics) -> Method:
+    """Forward kinematics."""
+    result = (POSITION, ROTATION, _measures(kin))
+    text = "Position, rotation and the signed margin of every branch."
+    return Method("forward", text, kin.forward, (_axes(kin),), "Pose", result)
+
+
+def branch(kin: Kinematics) -> Method:
+    """Inverse kinematics on one branch."""
+    pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
+    text = "The axes of one branch, periods included, limits not."
+    return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape)
+
+
+def limits(kin: Kinematics) -> Method:
+    """The test of the limits."""
+    return Method("limits", "Whether the axes are inside their limits.", kin.limits, (_axes(kin),), "", ())
+
+
+def _axes(kin: Kinematics) -> Argument:
+    return Argument("axes", "Reals", tuple(j.axis.name for j in kin.mechanism.joints))
+
+
+def _measures(kin: Kinematics) -> tuple[Shape, ...]:
+    return tuple(f"branch_{b.name}" for b in kin.branches)
+
+
+def _choice(kin: Kinematics) -> tuple[Argument, ...]:
+    return (
+        Argument("signs", "Reals", tuple(f"sigma_{b.name}" for b in kin.branches)),
+        Argument("turns", "Reals", tuple(j.turn.name for j in kin.period_joints)),
+        Argument("reference", "Reals", tuple(j.reference.name for j in kin.mechanism.joints)),
+    )

@@ -1,0 +1,163 @@
+"""A program as the body of a Python method: on plain numbers with early returns, on arrays with masks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import groupby
+
+import sympy as sp
+from sympy.core.relational import Relational
+
+from derive.emit.expression import FUNCTION_KEYS
+from derive.emit.python_layout import WIDTH, fold
+from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, spelled
+from derive.program import DEGREE, Let, Program, Require, Select, Statement
+
+Shape = str | tuple["Shape", ...]
+"""Names, nested as the tuples of the method's arguments and results are."""
+
+_SCALAR, _ARRAY = ScalarPrinter(), ArrayPrinter()
+
+
+@dataclass(frozen=True)
+class Argument:
+    """An argument of a method: a tuple of the values that the program reads by name."""
+
+    name: str
+    kind: str
+    """Its type: `Axes`, `Vector`, `Rotation`, `Signs`, `Turns`."""
+    shape: tuple[Shape, ...]
+
+
+@dataclass(frozen=True)
+class Method:
+    """A program with its place in the generated class."""
+
+    name: str
+    summary: str
+    program: Program
+    arguments: tuple[Argument, ...]
+    kind: str
+    """The type of the result, where the status is OK; empty where there is none."""
+    result: Shape
+
+
+def scalar_body(method: Method) -> list[str]:
+    """The body on plain numbers: the first condition that does not hold returns its status."""
+    lines = [*_unpacked(method), *_constants(method, "self._constants")]
+    for statement, same in _grouped(method.program.body):
+        if isinstance(statement, Let):
+            lines += let_lines(statement, _SCALAR)
+            continue
+        lines += [*_note(statement.note), *fold(f"if not ({conjunction(r.condition for r in same)}):")]
+        lines.append(f"    return Status.{statement.otherwise.name}")
+    return [*lines, *fold(f"return {_values(method, _SCALAR) or 'Status.OK'}")]
+
+
+def array_body(method: Method) -> list[str]:
+    """The body on arrays: every statement for all rows, a row's status is its first condition that does not hold."""
+    lines = [*_unpacked(method), *_constants(method, "self.constants")]
+    lines.append(f"status = passed({method.arguments[0].name})")
+    for statement, same in _grouped(method.program.body):
+        if isinstance(statement, Let):
+            lines += let_lines(statement, _ARRAY)
+            continue
+        lines += _note(statement.note)
+        for condition in (r.condition for r in same):
+            lines += fold(f"require(status, {_ARRAY.print(condition)}, Status.{statement.otherwise.name})")
+    values = _values(method, _ARRAY)
+    return [*lines, *fold(f"return {values}, status" if values else "return status")]
+
+
+def functions(programs: tuple[Program, ...]) -> list[str]:
+    """The primitives and constants that programs use, by their neutral names, in alphabetical order."""
+    found = set()
+    for program in programs:
+        values = [s.value if isinstance(s, Let) else s.condition for s in program.body] + [o.value for o in program.outputs]
+        for node in (n for v in values for n in sp.preorder_traversal(v)):
+            found |= {FUNCTION_KEYS[type(node)]} if type(node) in FUNCTION_KEYS else set()
+            found |= {DEGREE.name} if node == DEGREE else set()
+    return sorted(found)
+
+
+def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
+    """A binding, with the step of the derivation behind it or before it."""
+    value = printer.print(let.value)
+    if isinstance(let.value, Select) and value.startswith("("):
+        value = value[1:-1]
+    line = f"{spelled(let.name.name)} = {value}"
+    if let.note and len(line) + len(let.note) + 4 <= WIDTH:
+        return [f"{line}  # {let.note}"]
+    return [*_note(let.note), *fold(line)]
+
+
+def conjunction(conditions: Iterable[sp.Basic]) -> str:
+    """Conditions that must all hold, as one."""
+    parts = [p for c in conditions for p in (sp.ordered(c.args) if isinstance(c, sp.And) else [c])]
+    if len(parts) == 1:
+        return _SCALAR.print(parts[0])
+    return " and ".join(_SCALAR.print(p) if isinstance(p, Relational) else f"({_SCALAR.print(p)})" for p in parts)
+
+
+def _note(note: str) -> list[str]:
+    return [f"# {note}"] if note else []
+
+
+def _grouped(body: tuple[Statement, ...]) -> Iterator[tuple[Statement, tuple[Require, ...]]]:
+    """Statements in order; conditions that follow each other with the same outcome and note come together."""
+
+    def key(indexed: tuple[int, Statement]) -> tuple[object, ...]:
+        index, statement = indexed
+        return (index,) if isinstance(statement, Let) else (statement.otherwise.name, statement.note)
+
+    for _, group in groupby(enumerate(body), key):
+        statements = [statement for _, statement in group]
+        yield statements[0], tuple(s for s in statements if isinstance(s, Require))
+
+
+def _unpacked(method: Method) -> list[str]:
+    """The arguments by the names that the program reads; what it does not read is `_`."""
+    read = {s.name for s in method.program.reads()}
+    lines: list[str] = []
+    for argument in method.arguments:
+        if read & set(names(argument.shape)):
+            targets = _targets(argument.shape, read)
+            lines += fold(f"{targets[1:-1]} = {argument.name}" if len(argument.shape) > 1 else f"{targets} = {argument.name}")
+    return lines
+
+
+def _targets(shape: Shape, read: set[str]) -> str:
+    if isinstance(shape, str):
+        return spelled(shape) if shape in read else "_"
+    if not read & set(names(shape)):
+        return "_"
+    return _tuple([_targets(s, read) for s in shape])
+
+
+def names(shape: Shape) -> Iterator[str]:
+    """The names of a shape, in order."""
+    if isinstance(shape, str):
+        yield shape
+    else:
+        for part in shape:
+            yield from names(part)
+
+
+def _constants(method: Method, owner: str) -> list[str]:
+    given = {name for argument in method.arguments for name in names(argument.shape)}
+    constants = sorted({s.name for s in method.program.reads()} - given)
+    return [f"k = {owner}", *(f"{spelled(c)} = k.{c}" for c in constants)] if constants else []
+
+
+def _values(method: Method, printer: ScalarPrinter) -> str:
+    values = {o.name: printer.print(o.value) for o in method.program.outputs}
+
+    def text(shape: Shape) -> str:
+        return values[shape] if isinstance(shape, str) else _tuple([text(s) for s in shape])
+
+    return text(method.result) if method.kind else ""
+
+
+def _tuple(parts: list[str]) -> str:
+    return f"({parts[0]},)" if len(parts) == 1 else f"({', '.join(parts)})"

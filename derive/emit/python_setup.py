@@ -1,0 +1,60 @@
+"""The setup program as the function that makes the constants of a machine from its parameters."""
+
+from __future__ import annotations
+
+from derive.emit.python_layout import fold
+from derive.emit.python_printer import ScalarPrinter, spelled
+from derive.emit.python_program import conjunction, let_lines
+from derive.kinematics import Kinematics
+from derive.mechanism import Parameter, Role
+from derive.program import Let, Require
+
+_PRINTER = ScalarPrinter()
+_TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
+
+
+def keywords(parameters: tuple[Parameter, ...]) -> list[str]:
+    """The head of `__init__`: every parameter as a keyword, with its default where it has one."""
+    typed = (f"{p.name}: {_TYPES.get(p.role, 'float')}{_default(p)}" for p in parameters)
+    return fold(f"def __init__(self, *, {', '.join(typed)}) -> None:")
+
+
+def accepted(parameters: tuple[Parameter, ...]) -> list[str]:
+    """The statement that takes every parameter in."""
+    return fold(f"values = self._accept({', '.join(p.name for p in parameters)})")
+
+
+def setup_head(parameters: tuple[Parameter, ...]) -> list[str]:
+    """The head of the setup function."""
+    return fold(f"def _setup(self, {', '.join(f'{spelled(p.name)}: float' for p in parameters)}) -> Constants:")
+
+
+def setup_body(kin: Kinematics) -> list[str]:
+    """Conditions as errors that name the parameters, then the constants."""
+    inputs = [s.name for s in kin.setup.inputs]
+    lines: list[str] = []
+    for statement in kin.setup.body:
+        lines += let_lines(statement, _PRINTER) if isinstance(statement, Let) else _refusal(statement, inputs)
+    values = (f"{spelled(o.name)}={_PRINTER.print(o.value)}" for o in kin.setup.outputs)
+    return [*lines, *fold(f"return Constants({', '.join(values)})")]
+
+
+def constants(kin: Kinematics) -> list[str]:
+    """The names of the constants."""
+    return [spelled(output.name) for output in kin.setup.outputs]
+
+
+def _refusal(statement: Require, inputs: list[str]) -> list[str]:
+    read = {s.name for s in statement.condition.free_symbols}
+    values = "".join(f", {spelled(name)}={spelled(name)}" for name in inputs if name in read)
+    message = statement.note.replace('"', "'")
+    error = f'raise self._refusal("{message}"{values})'
+    return [*fold(f"if not ({conjunction([statement.condition])}):"), *fold(error, 4)]
+
+
+def _default(parameter: Parameter) -> str:
+    if parameter.default is None:
+        return ""
+    if parameter.role is Role.FLAG:
+        return f" = {bool(parameter.default)}"
+    return f" = {int(parameter.default) if parameter.role is Role.SIGN else parameter.default!r}"

@@ -1,0 +1,97 @@
+"""The SoftMotion contract, read from its data: interfaces, signatures and spellings."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+from derive.emit.language import TEMPLATES
+
+_FILE = TEMPLATES / "st" / "softmotion.toml"
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a method, in the order of its declaration."""
+
+    scope: str
+    name: str
+    type: str
+
+
+@dataclass(frozen=True)
+class Signature:
+    """A method: its name, what it returns ("" for nothing) and its parameters."""
+
+    name: str
+    returns: str
+    parameters: tuple[Parameter, ...]
+    access: str = "PUBLIC"
+
+    def head(self) -> str:
+        """The declaration, without the method's own variables."""
+        returns = f" : {self.returns}" if self.returns else ""
+        lines = [f"METHOD {self.access} {self.name}{returns}"]
+        for scope, parameters in groupby(self.parameters, key=lambda p: p.scope):
+            lines += [scope, *(f"  {p.name} : {p.type};" for p in parameters), "END_VAR"]
+        return "\n".join(lines)
+
+
+@dataclass(frozen=True)
+class Interface:
+    """An interface: what it extends, and what it adds."""
+
+    name: str
+    extends: tuple[str, ...]
+    properties: Mapping[str, str]
+    methods: Mapping[str, Signature]
+
+
+@dataclass(frozen=True)
+class Contract:
+    """Everything that is known of SoftMotion."""
+
+    interfaces: Mapping[str, Interface]
+    own: Mapping[str, Signature]
+    omits: frozenset[str]
+    spelling: Mapping[str, Mapping[str, Any]]
+    """The other tables of the file: errors, types, enumerators and so on."""
+
+    @property
+    def signatures(self) -> dict[str, Signature]:
+        """Every method by name."""
+        found = dict(self.own)
+        for interface in self.interfaces.values():
+            found.update(interface.methods)
+        return found
+
+    def available(self, name: str) -> str | None:
+        """The interface, or the nearest predecessor that the profile has."""
+        if name not in self.omits:
+            return name
+        bases = [self.available(base) for base in self.interfaces[name].extends]
+        return next((b for b in bases if b is not None and b != "MC_KIN_REF_SM3"), None)
+
+    def closure(self, names: Sequence[str]) -> Iterator[Interface]:
+        """The interfaces of these names and all they extend."""
+        for name in names:
+            yield self.interfaces[name]
+            yield from self.closure(self.interfaces[name].extends)
+
+
+def load() -> Contract:
+    """Read the contract."""
+    data = tomllib.loads(_FILE.read_text(encoding="utf-8"))
+    interfaces = {
+        name: Interface(name, tuple(i["extends"]), i.get("properties", {}), _signatures(i.get("methods", {})))
+        for name, i in data.pop("interfaces").items()
+    }
+    omits = frozenset(data["profiles"][data["profile"]]["omits"])
+    return Contract(interfaces, _signatures(data.pop("own")), omits, data)
+
+
+def _signatures(methods: Mapping[str, Any]) -> dict[str, Signature]:
+    return {name: Signature(name, m["returns"], tuple(Parameter(*p) for p in m["parameters"])) for name, m in methods.items()}

@@ -1,0 +1,97 @@
+"""The comment of a function block: its description in reStructuredText, as the configurator shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from textwrap import wrap
+
+from jinja2 import Environment
+
+from derive.emit.st_block import Block
+from derive.emit.st_names import input_name, respelled
+from derive.kinematics import Kinematics
+from derive.mechanism import Kind
+
+_WIDTH = 100
+_MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
+_PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 the value nearest to the reference"
+_BRANCH = "0 automatic, 3 where both solutions coincide"
+_SOURCE = "Position kinematics for a SoftMotion axis group. Source of the geometry: "
+_AUTOMATIC = (
+    "Automatic bytes take the solution nearest to the reference. They are meant for point-to-point movements; "
+    "limits refuse a solution, they never choose another one."
+)
+
+
+def description(kinematics: Kinematics, block: Block, templates: Environment) -> str:
+    """The description of a block."""
+    names = {p.name: input_name(p) for p in kinematics.parameters}
+    text = templates.get_template("description.rst.j2").render(
+        mechanism=kinematics.mechanism,
+        source="\n".join(wrap(_SOURCE + kinematics.mechanism.source + ".", _WIDTH)),
+        summary="\n".join(wrap(kinematics.mechanism.summary, _WIDTH)),
+        rows=", ".join(kinematics.rows),
+        axes=_table(("Axis", "Motion", "Meaning"), _axes(kinematics)),
+        parameters=_table(("Parameter", "Unit", "Range", "Meaning"), _parameters(block)),
+        configuration=list(_configuration(block)),
+        singularities=list(_singularities(kinematics)),
+        notes=[line for note in kinematics.mechanism.notes for line in _item(respelled(note, names))],
+        verification=list(_verification(kinematics)),
+    )
+    return text.rstrip("\n")
+
+
+def _axes(kinematics: Kinematics) -> Iterator[Sequence[str]]:
+    for joint in kinematics.mechanism.joints:
+        yield joint.name, _MOTION[joint.kind], joint.meaning
+
+
+def _parameters(block: Block) -> Iterator[Sequence[str]]:
+    for given in block.inputs:
+        yield given.name, given.unit or "-", given.range or given.type, given.meaning
+
+
+def _configuration(block: Block) -> Iterator[str]:
+    if not block.configuration_size:
+        yield "None: every pose has one solution."
+        return
+    for branch in block.branches:
+        yield from _item(f"Byte {branch.byte}, {branch.name}: 1 {branch.first}, 2 {branch.second}, {_BRANCH}.")
+    for period in block.periods:
+        yield from _item(f"Byte {period.byte}, turn of {period.axis} (signed): {_PERIOD}.")
+    yield ""
+    yield from wrap(f"{block.name}_Config sets a configuration, {block.name}_ReadConfig reads one. {_AUTOMATIC}", _WIDTH)
+
+
+def _singularities(kinematics: Kinematics) -> Iterator[str]:
+    if not kinematics.margins:
+        yield "None."
+    for margin in kinematics.margins:
+        yield from _item(f"{margin.name} ({margin.kind}): where its margin, a number without a unit, is 0.")
+
+
+def _verification(kinematics: Kinematics) -> Iterator[str]:
+    found = kinematics.evidence
+    if found is None:
+        yield "None."
+        return
+    yield from wrap(
+        f"The formulas were derived from the closure equations and checked against them at {found.poses} poses: "
+        f"residual {found.closure_residual:.0e}, inverse after forward {found.round_trip:.0e}, Jacobian against "
+        f"automatic differentiation {found.jacobian:.0e}; {found.solutions} solutions were found by multi-start root "
+        "finding, each of them a solution of these formulas. No run on a controller.",
+        _WIDTH,
+    )
+
+
+def _item(text: str) -> list[str]:
+    return wrap(text, _WIDTH, initial_indent="- ", subsequent_indent="  ")
+
+
+def _table(head: Sequence[str], rows: Iterator[Sequence[str]]) -> list[str]:
+    """A simple table of reStructuredText."""
+    cells = [head, *rows]
+    widths = [max(len(row[column]) for row in cells) for column in range(len(head))]
+    rule = " ".join("=" * width for width in widths)
+    lines = [" ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+    return [rule, lines[0], rule, *lines[1:], rule]

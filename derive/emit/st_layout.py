@@ -1,0 +1,85 @@
+"""Lines of Structured Text: indents, and long statements broken where they read well."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+WIDTH = 110
+_INDENT = "  "
+_CALL = re.compile(r"\w+\([^()]*\)")
+_PLAIN_WORD = re.compile(r"[a-z]+\b")
+"""A word that may begin a sentence with a capital: no name."""
+_LONG_CONDITION = 45
+_BREAKS = (" + ", " - ", " AND ", " OR ")
+
+
+def indented(lines: Sequence[str]) -> list[str]:
+    """The lines, one step further in."""
+    return [_INDENT + line if line else line for line in lines]
+
+
+def wrapped(statement: str) -> list[str]:
+    """The lines of a statement: broken before an operator or behind a comma, outermost parentheses first."""
+    lines: list[str] = []
+    margin = ""
+    while len(margin) + len(statement) > WIDTH:
+        place = _place(statement, WIDTH - len(margin))
+        if place is None:
+            break
+        lines.append(margin + statement[:place].rstrip())
+        statement = statement[place:].lstrip()
+        margin = 2 * _INDENT
+    return [*lines, margin + statement]
+
+
+def assigned(target: str, value: str) -> str:
+    """`target := value;` in as many lines as it takes."""
+    return "\n".join(wrapped(f"{target} := {value};"))
+
+
+def conjunction(head: str, parts: Sequence[str], tail: str) -> list[str]:
+    """`head (first) AND (second) tail`, one condition a line where they are long."""
+    if len(parts) == 1:
+        return wrapped(f"{head}{parts[0]}{tail}")
+    bracketed = [part if _CALL.fullmatch(part) else f"({part})" for part in parts]
+    whole = f"{head}{' AND '.join(bracketed)}{tail}"
+    if len(whole) <= WIDTH or max(map(len, bracketed)) <= _LONG_CONDITION:
+        return wrapped(whole)
+    lines = [head + bracketed[0], *(f"{2 * _INDENT}AND {part}" for part in bracketed[1:])]
+    return [*lines[:-1], lines[-1] + tail]
+
+
+def commented(lines: Sequence[str], comment: str) -> list[str]:
+    """The lines with a comment beside the last one, or above where there is no room."""
+    if not comment:
+        return list(lines)
+    if len(lines) == 1 and len(f"{lines[0]}  // {comment}") <= WIDTH:
+        return [f"{lines[0]}  // {comment}"]
+    sentence = comment[0].upper() + comment[1:] if _PLAIN_WORD.match(comment) else comment
+    return [f"// {sentence}", *lines]
+
+
+def _place(text: str, width: int) -> int | None:
+    """The best place to break within a width: least nested, then furthest; the first one beyond if none fits."""
+    places = list(_places(text))
+    fitting = [(depth, -at) for at, depth in places if width // 4 < at <= width]
+    if fitting:
+        return -min(fitting)[1]
+    return next((at for at, _ in places if at > width // 4), None)
+
+
+def _places(text: str) -> Iterator[tuple[int, float]]:
+    """Where a line may end, and how deep that is: a product binds half a level more than a sum."""
+    depth = 0
+    for at, character in enumerate(text):
+        if character in "([":
+            depth += 1
+        elif character in ")]":
+            depth -= 1
+        elif text.startswith(_BREAKS, at):
+            yield at + 1, depth
+        elif character in "*/":
+            yield at, depth + 0.5
+        elif text.startswith(", ", at):
+            yield at + 2, depth

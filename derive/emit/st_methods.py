@@ -1,0 +1,156 @@
+"""The methods of a function block: which it has, what their programs read, and how they refuse."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from jinja2 import Environment
+
+from derive.emit.st_block import Block, constants, direct
+from derive.emit.st_calls import BranchCall, branch_call
+from derive.emit.st_contract import Contract, Signature
+from derive.emit.st_inputs import number_of
+from derive.emit.st_names import joined, stored_name
+from derive.emit.st_program import Printed, Refusal, printed
+from derive.kinematics import Kinematics
+from derive.program import Program, Status
+
+_FIRST = (
+    "Initialize",
+    "IsInitialized",
+    "GetKinematicsName",
+    "GetAxisProperties",
+    "AxesToCartesian",
+    "CartesianToAxes",
+    "AxesToOrientation",
+    "IsSingularity",
+    "Jacobian",
+    "GetOrientationImage",
+    "GetFlangeOrientationImageTotal",
+    "GetFlangeOrientationImageWithOri",
+    "AxesToConfiguration_Offset",
+    "CartesianToAxes_Offset",
+)
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method as text: its declaration with parameters, and its own variables with the statements."""
+
+    head: str
+    text: str
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A method before it is text: its signature, its program, and the call of a branch it makes."""
+
+    signature: Signature
+    program: Program | None = None
+    call: BranchCall | None = None
+
+
+def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> tuple[Method, ...]:
+    """All methods in the order of the contract, private ones behind the method that calls them."""
+    return tuple(_method(source, kinematics, block, contract, templates) for source in _sources(kinematics, block, contract))
+
+
+def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
+    """How every free name of a program other than `setup` is spelled in a method."""
+    spelled = {name: stored_name(name) for name in constants(kinematics)}
+    for index, joint in enumerate(kinematics.mechanism.joints):
+        spelled[joint.axis.name] = f"a.a{index}"
+        spelled[joint.reference.name] = f"aRef.a{index}"
+        spelled[joint.turn.name] = joined(joint.turn.name)
+    spelled |= {f"sigma_{b.name}": joined(f"sigma_{b.name}") for b in kinematics.branches}
+    return spelled | {f"r{r}{c}": f"rot[{r}, {c}]" for r in (1, 2, 3) for c in (1, 2, 3)}
+
+
+def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterator[_Source]:
+    known = contract.signatures
+    programs = {
+        "Initialize": kinematics.setup,
+        "AxesToCartesian": kinematics.forward,
+        "AxesToOrientation": kinematics.orientation,
+        "IsSingularity": kinematics.singularity,
+        "GetOrientationImage": kinematics.image,
+        "GetFlangeOrientationImageWithOri": kinematics.projection,
+        "AxesToConfiguration_Offset": kinematics.offset_configuration,
+        "Jacobian": kinematics.jacobian,
+    }
+    solved = {"CartesianToAxes": kinematics.branch, "CartesianToAxes_Offset": kinematics.offset_branch}
+    for name in _names(block, contract):
+        program = solved.get(name)
+        if program is None:
+            yield _Source(known[name], programs.get(name))
+            continue
+        call = branch_call(known[name], program, kinematics, block)
+        yield _Source(known[name], call=call)
+        yield _Source(call.signature, program)
+        if name == "CartesianToAxes":
+            yield _Source(_check_limits(contract), kinematics.limits)
+
+
+def _names(block: Block, contract: Contract) -> list[str]:
+    """The public methods: of all implemented interfaces and our own, what a reader looks for first in front."""
+    names = [m for i in contract.closure(block.interfaces) for m in i.methods]
+    names = list(dict.fromkeys([*names, *contract.own]))
+    return sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
+
+
+def _check_limits(contract: Contract) -> Signature:
+    axes = contract.signatures["Jacobian"].parameters[1]
+    return Signature("TestLimits", contract.spelling["types"]["error"], (axes,), "PRIVATE")
+
+
+def _method(source: _Source, kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> Method:
+    name = source.signature.name
+    context: dict[str, object] = {"block": block, "method": name, "call": source.call}
+    if source.program is not None:
+        context["program"] = _printed(source.signature, source.program, kinematics, block, contract)
+    text = templates.get_template(f"methods/{name}.st.j2").render(contract.spelling, **context)
+    return Method(source.signature.head(), _tidy(text))
+
+
+def _printed(signature: Signature, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> Printed:
+    taken = {i.name for i in block.inputs} | set(block.fields) | {p.name for p in signature.parameters}
+    taken |= {"initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes", *contract.signatures}
+    refusal = _refusal(signature, contract.spelling["errors"])
+    if program is kinematics.setup:
+        given = {p.name: number_of(p) for p in kinematics.parameters}
+        stored = {let: stored_name(output) for let, output in direct(kinematics).items()}
+        return printed(program, given, stored, taken, refusal)
+    return printed(program, _positions(signature) | spelled_inputs(kinematics), {}, taken, refusal)
+
+
+def _positions(signature: Signature) -> dict[str, str]:
+    """The spelling of a commanded position and of a tool offset, by the parameters that hold them."""
+    names = {p.name for p in signature.parameters}
+    point = "v_MCS" if "v_MCS" in names else "f.vT"
+    spelled = {axis: f"{point}.d{axis.upper()}" for axis in "xyz"}
+    if "vOffset_TCP" in names:
+        spelled |= {f"point_{axis}": f"vOffset_TCP.d{axis.upper()}" for axis in "xyz"}
+    return spelled
+
+
+def _refusal(signature: Signature, errors: Mapping[str, str]) -> Refusal:
+    """How a method ends where a condition of its program does not hold."""
+
+    def lines(status: Status) -> tuple[str, ...]:
+        if not signature.returns:
+            return ("RETURN;",)
+        value = "TRUE" if signature.returns == "BOOL" else errors[status.name]
+        return (f"{signature.name} := {value};", "RETURN;")
+
+    return lines
+
+
+def _tidy(text: str) -> str:
+    """Without empty sections, and with single empty lines between paragraphs only."""
+    text = re.sub(r"\n(VAR\n)\s*\n", r"\n\1", "\n" + text)
+    text = re.sub(r"\n\s*\n(END_VAR|END_IF|END_FOR)", r"\n\1", text)
+    text = re.sub(r"\nVAR\nEND_VAR(?=\n)", "", text)
+    text = re.sub(r"\n{3,}", "\n\n", text)
+    return text.strip("\n") if text.lstrip("\n").startswith("VAR") else "\n" + text.strip("\n")

@@ -1,0 +1,73 @@
+"""Names in Structured Text: words joined, prefixes at the interface, unique ignoring case."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+from derive.mechanism import Parameter, Role
+
+_LETTERS = {"zc": "ZC"}
+"""Words that are letters of axes."""
+_NEUTRAL = re.compile(r"[a-z]+(_[a-z0-9]+)+")
+_PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
+
+RESERVED = frozenset(
+    """
+    abs acos action adr and any array asin at atan begin bool by byte case constant continue cos date delete dint do
+    dt dword edom efault einval else elsif end eof erange error exit exp expt f_edge false final find for from function
+    get if implements in infinity insert int interface jmp left len limit lint ln log lreal ltime lword max method mid
+    min mod move mux nan new not null of on or out persistent pi pointer private program property public r_edge read
+    real ref reference region repeat replace retain return right rol ror s sel set shl shr sin sint sizeof sqrt step
+    string struct super t tan task then this time to tod transition true trunc type udint uint ulint union until usint
+    var while with word write wstring xor
+    """.split()
+)
+"""Words of the language and of its dialects, and macros of the C compilers behind some of them."""
+
+TEMPLATE_LOCALS = frozenset(
+    """
+    branch candidate column configuration distance failure found least nothing order projected rot row slot solution
+    status tried
+    """.split()
+)
+"""Variables that the templates of methods declare."""
+
+
+def joined(name: str) -> str:
+    """`link_length_1` → `linkLength1`."""
+    first, *rest = name.split("_")
+    return first + "".join(capitalized(word) for word in rest)
+
+
+def capitalized(name: str) -> str:
+    """`link_length_1` → `LinkLength1`."""
+    return "".join(_LETTERS.get(word, word[:1].upper() + word[1:]) for word in name.split("_"))
+
+
+def input_name(parameter: Parameter) -> str:
+    """The input of the function block: `dLinkLength1`, `xFlangeDown`, `iDirectionR`."""
+    return _PREFIX.get(parameter.role, "d") + capitalized(parameter.name)
+
+
+def stored_name(name: str) -> str:
+    """The instance variable for a constant: `link_length_1` → `linkLength1`."""
+    return spellings((name,), ())[name]
+
+
+def respelled(text: str, names: Mapping[str, str]) -> str:
+    """A sentence with the neutral names in it as they are spelled here, in ASCII."""
+    return _NEUTRAL.sub(lambda found: names.get(found.group(), found.group()), text).replace("²", "^2")
+
+
+def spellings(names: Iterable[str], taken: Iterable[str]) -> dict[str, str]:
+    """A spelling for every neutral name, none of which is reserved or taken."""
+    used = {t.lower() for t in taken} | RESERVED | TEMPLATE_LOCALS
+    found: dict[str, str] = {}
+    for name in names:
+        spelled = joined(name)
+        while spelled.lower() in used:
+            spelled += "Value"
+        used.add(spelled.lower())
+        found[name] = spelled
+    return found

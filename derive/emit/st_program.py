@@ -1,0 +1,114 @@
+"""A program as statements of Structured Text: assignments, early returns, and the text of its outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+import sympy as sp
+
+from derive.emit.st_expression import StructuredText, is_size_test
+from derive.emit.st_layout import commented, conjunction, indented, wrapped
+from derive.emit.st_names import respelled, spellings
+from derive.program import DEGREE, Let, Program, Require, Select, Status
+
+Refusal = Callable[[Status], Sequence[str]]
+"""What a method does where a condition does not hold: the statements up to and with RETURN."""
+
+_SHORT = 72
+"""A selection that fits in this many columns stays on one line."""
+
+
+@dataclass(frozen=True)
+class Printed:
+    """A program in Structured Text."""
+
+    variables: tuple[str, ...]
+    """Its temporaries, all LREAL."""
+    body: str
+    outputs: Mapping[str, str]
+    """The expression of every output, by its neutral name."""
+
+
+def printed(
+    program: Program, given: Mapping[str, str], stored: Mapping[str, str], taken: Iterable[str], refusal: Refusal
+) -> Printed:
+    """Spell a program.
+
+    `given` spells what it reads, `stored` those of its bindings that are instance variables; the others are
+    temporaries, and have none of the names in `taken`.
+    """
+    names = (let.name.name for let in program.lets() if let.name.name not in stored)
+    temporaries = spellings(names, taken)
+    printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
+    return Printed(
+        variables=tuple(temporaries.values()),
+        body="\n".join(_body(program, printer, refusal)),
+        outputs={o.name: printer.print(o.value) for o in program.outputs},
+    )
+
+
+def _body(program: Program, printer: StructuredText, refusal: Refusal) -> Iterator[str]:
+    for kind, group in groupby(program.body, key=lambda s: _kind(s, printer)):
+        statements = list(group)
+        lets = [s for s in statements if isinstance(s, Let)]
+        conditions = [s.condition for s in statements if isinstance(s, Require)]
+        if isinstance(kind[0], Status):
+            yield from commented(_require(conditions, printer, refusal(kind[0])), respelled(statements[0].note, printer.names))
+        elif isinstance(kind[0], str):
+            yield from commented(_choice(kind[0], lets, printer), _notes(lets, printer.names))
+        else:
+            yield from _assignments(lets, printer)
+
+
+Kind = tuple[Status | str | None, str, bool]
+
+
+def _kind(statement: Let | Require, printer: StructuredText) -> Kind:
+    """What statements in a row have in common that are printed together.
+
+    Conditions that refuse alike are one condition. Those on the size of inputs stay apart: AND evaluates both
+    sides, and what follows them is defined only where they hold. Selections by one condition are one IF.
+    """
+    if isinstance(statement, Require):
+        return statement.otherwise, statement.note, all(map(is_size_test, sp.And.make_args(statement.condition)))
+    if isinstance(statement.value, Select):
+        return printer.print(statement.value.args[0]), "", False
+    return None, "", False
+
+
+def _notes(lets: Sequence[Let], names: Mapping[str, str]) -> str:
+    return "; ".join(dict.fromkeys(respelled(let.note, names) for let in lets if let.note))
+
+
+def _require(conditions: Sequence[sp.Basic], printer: StructuredText, refusal: Sequence[str]) -> list[str]:
+    parts = [printer.print(part) for c in conditions for part in sp.ordered(sp.And.make_args(c))]
+    head = conjunction("IF NOT (", parts, ") THEN")
+    return [*head, *indented(refusal), "END_IF"]
+
+
+def _assignments(lets: Sequence[Let], printer: StructuredText) -> Iterator[str]:
+    note = ""
+    for let in lets:
+        lines = wrapped(_assignment(let, let.value, printer))
+        yield from commented(lines, "" if let.note == note else respelled(let.note, printer.names))
+        note = let.note
+
+
+def _choice(condition: str, lets: Sequence[Let], printer: StructuredText) -> list[str]:
+    """Selections by one condition: a single short one as SEL, others as IF."""
+    whole = [_assignment(let, let.value, printer) for let in lets]
+    if len(whole) == 1 and len(whole[0]) <= _SHORT:
+        return whole
+    return [
+        *wrapped(f"IF {condition} THEN"),
+        *indented([line for let in lets for line in wrapped(_assignment(let, let.value.args[1], printer))]),
+        "ELSE",
+        *indented([line for let in lets for line in wrapped(_assignment(let, let.value.args[2], printer))]),
+        "END_IF",
+    ]
+
+
+def _assignment(let: Let, value: sp.Expr, printer: StructuredText) -> str:
+    return f"{printer.name(let.name)} := {printer.print(value)};"

@@ -1,0 +1,130 @@
+"""Printed expressions and programs, run, against the reference semantics of what they print."""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from softkin import _array, _scalar
+from softkin._types import Status as Code
+
+from derive.emit.python_layout import WIDTH, fold
+from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, literal, spelled
+from derive.emit.python_program import Argument, Method, array_body, scalar_body
+from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Require, Root, Select, Status, real
+from derive.run import evaluate, run
+
+NAMES = ("first", "second", "third")
+LEAVES = st.sampled_from([*map(real, NAMES), DEGREE, sp.Integer(2), sp.Integer(-3), sp.Rational(1, 3), sp.Float("1e-12")])
+
+
+def _le(left: sp.Expr, right: sp.Expr) -> sp.Basic:
+    return sp.Le(left, right, evaluate=False)
+
+
+def _gt(left: sp.Expr, right: sp.Expr) -> sp.Basic:
+    return sp.Gt(left, right, evaluate=False)
+
+
+def _grown(parts: st.SearchStrategy[sp.Expr]) -> st.SearchStrategy[sp.Expr]:
+    condition = st.builds(lambda a, b, c, d: sp.And(_le(a, b), sp.Or(_gt(c, d), _gt(a, d))), parts, parts, parts, parts)
+    return st.one_of(
+        st.builds(lambda a, b: a + b, parts, parts),
+        st.builds(lambda a, b: a - b, parts, parts),
+        st.builds(lambda a, b: a * b, parts, parts),
+        st.builds(lambda a, b: a / Select(_gt(b, sp.Integer(1)), b, sp.Integer(1)), parts, parts),
+        st.builds(lambda a: a**2, parts),
+        st.builds(lambda f, a: f(a), st.sampled_from([sp.sin, sp.cos, sp.Abs, Root]), parts),
+        st.builds(lambda f, a, b: f(a, b), st.sampled_from([Atan2, NearestPeriod]), parts, parts),
+        st.builds(lambda c, a, b: Select(c, a, b), condition, parts, parts),
+    )
+
+
+EXPRESSIONS = st.recursive(LEAVES, _grown, max_leaves=12)
+VALUES = st.fixed_dictionaries({name: st.sampled_from([0.0, 1.0, -1.0, 0.3, 2.5, -7.0, 200.0]) for name in NAMES})
+
+
+def _namespace(module: object) -> dict[str, object]:
+    return {**vars(module), "Status": Code}
+
+
+@settings(deadline=None)
+@given(expression=EXPRESSIONS, values=VALUES)
+def test_expressions_mean_the_same_in_print(expression: sp.Expr, values: dict[str, float]) -> None:
+    with np.errstate(all="ignore"):
+        expected = float(evaluate(expression, {k: np.asarray(v) for k, v in values.items()}))
+        scalar = eval(ScalarPrinter().print(expression), _namespace(_scalar), dict(values))
+        arrays = {k: np.array([v]) for k, v in values.items()}
+        array = eval(ArrayPrinter().print(expression), _namespace(_array), arrays)
+    np.testing.assert_allclose(scalar, expected, rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(array, expected, rtol=1e-9, atol=1e-9)
+
+
+@given(value=st.floats(allow_nan=False, allow_infinity=False))
+def test_literals_are_exact(value: float) -> None:
+    assert float(literal(value)) == value
+    assert not literal(value).lstrip("-").isdigit()
+
+
+def test_names_of_python_are_avoided() -> None:
+    assert [spelled(n) for n in ("lambda", "root", "axes", "link_length_1")] == ["lambda_", "root_", "axes_", "link_length_1"]
+
+
+@settings(deadline=None)
+@given(expression=EXPRESSIONS)
+def test_folded_lines_hold_the_same_text(expression: sp.Expr) -> None:
+    for printer in (ScalarPrinter(), ArrayPrinter()):
+        text = printer.print(expression)
+        lines = fold(f"result = {text}", 8)
+        whole = "".join("".join(lines).split()).replace(",)", ")")
+        bare = f"result={''.join(text.split())}"
+        assert whole in (bare, f"result=({bare.removeprefix('result=')})")
+        assert all(len(line) <= WIDTH or len(line.split()) <= 3 for line in lines)
+
+
+X, Y = real("axis_x"), real("axis_y")
+PROGRAM = Program(
+    "demo",
+    (X, Y, real("scale")),
+    (
+        Require(sp.Le(sp.Abs(X), 100), Status.BAD_INPUT, "finite"),
+        Require(sp.Le(sp.Abs(Y), 100), Status.BAD_INPUT, "finite"),
+        Let(real("size"), Root(X**2 + Y**2), "the distance from the origin"),
+        Require(sp.Gt(real("size"), 1), Status.UNREACHABLE),
+        Let(real("turned"), Select(sp.And(X > 0, Y > 0), Atan2(Y, X), -real("size")) * real("scale")),
+    ),
+    (Output("size", real("size")), Output("turned", real("turned"))),
+)
+METHOD = Method("demo", "", PROGRAM, (Argument("axes", "Reals", ("axis_x", "axis_y")),), "Reals", ("size", "turned"))
+
+
+class _Machine:
+    """Constants as the generated methods find them."""
+
+    class constants:
+        scale = 2.0
+
+    _constants = constants
+
+
+def _compiled(body: list[str], module: object) -> object:
+    space = _namespace(module)
+    exec("\n".join(["def demo(self, axes):", *(f"    {line}" for line in body)]), space)
+    return space["demo"]
+
+
+@settings(deadline=None)
+@given(x=st.floats(allow_nan=True), y=st.floats(-150.0, 150.0))
+def test_programs_mean_the_same_in_print(x: float, y: float) -> None:
+    outputs, status = run(PROGRAM, {"axis_x": np.array([x]), "axis_y": np.array([y]), "scale": np.array([2.0])})
+    scalar = _compiled(scalar_body(METHOD), _scalar)(_Machine(), (x, y))  # type: ignore[operator]
+    with np.errstate(all="ignore"):
+        array, codes = _compiled(array_body(METHOD), _array)(_Machine(), (np.array([x]), np.array([y])))  # type: ignore[operator]
+    expected = Code[status[0].name]
+    assert codes[0] == expected
+    if expected is not Code.OK:
+        assert scalar is expected
+        return
+    np.testing.assert_allclose(scalar, [outputs["size"][0], outputs["turned"][0]], rtol=1e-12)
+    np.testing.assert_allclose([a[0] for a in array], scalar, rtol=1e-12)

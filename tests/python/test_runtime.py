@@ -1,0 +1,98 @@
+"""The primitives of the generated package, on plain numbers and on arrays, against the reference semantics."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+from softkin import _array, _scalar
+from softkin._types import Status
+
+from derive.program import Atan2, NearestOnArc, NearestPeriod, Root, real
+from derive.run import evaluate
+
+SIZES = st.floats(-1e9, 1e9) | st.sampled_from([0.0, -0.0, 1.0, -1.0, 1e-12, -1e-12, 180.0, -180.0])
+ANGLES = st.floats(-50.0, 50.0)
+DEGREES = st.floats(-1e5, 1e5) | st.integers(-20, 20).map(lambda n: 180.0 * n)
+PRIMITIVES: dict[str, tuple[type[sp.Function], tuple[st.SearchStrategy[float], ...]]] = {
+    "sin": (sp.sin, (ANGLES,)),
+    "cos": (sp.cos, (ANGLES,)),
+    "root": (Root, (SIZES,)),
+    "atan2": (Atan2, (SIZES, SIZES)),
+    "nearest_period": (NearestPeriod, (DEGREES, DEGREES)),
+    "nearest_on_arc": (NearestOnArc, (ANGLES, ANGLES, st.floats(0.0, math.pi))),
+}
+
+
+@pytest.mark.parametrize("name", PRIMITIVES)
+@given(data=st.data())
+def test_primitive_is_its_reference(name: str, data: st.DataObject) -> None:
+    function, ranges = PRIMITIVES[name]
+    arguments = [data.draw(r) for r in ranges]
+    symbols = [real(f"argument_{i}") for i, _ in enumerate(arguments)]
+    values = {s.name: np.asarray(v) for s, v in zip(symbols, arguments, strict=True)}
+    expected = float(evaluate(function(*symbols), values))
+    scalar: Callable[..., float] = getattr(_scalar, name)
+    array: Callable[..., np.ndarray] = getattr(_array, name)
+    assert scalar(*arguments) == pytest.approx(expected, rel=1e-15, abs=1e-15)
+    assert array(*(np.array([v]) for v in arguments))[0] == pytest.approx(expected, rel=1e-15, abs=1e-15)
+
+
+@given(y=SIZES, x=SIZES)
+def test_atan2_points_where_it_says(y: float, x: float) -> None:
+    angle = _scalar.atan2(y, x)
+    assert -math.pi <= angle <= math.pi  # -pi for an angle that rounds to it
+    assert math.hypot(x, y) * math.cos(angle) == pytest.approx(x, abs=1e-6)
+    assert math.hypot(x, y) * math.sin(angle) == pytest.approx(y, abs=1e-6)
+
+
+def test_zeros_have_no_sign() -> None:
+    assert _scalar.atan2(-0.0, -1.0) == math.pi
+    assert _scalar.atan2(0.0, -0.0) == 0.0
+    assert list(_array.atan2(np.array([-0.0, 0.0]), np.array([-1.0, -0.0]))) == [math.pi, 0.0]
+
+
+@given(value=DEGREES, centre=DEGREES)
+def test_nearest_period_is_the_same_direction_and_near(value: float, centre: float) -> None:
+    found = _scalar.nearest_period(value, centre)
+    turns = (found - value) / 360.0
+    assert turns == pytest.approx(round(turns), abs=1e-9)
+    assert -180.0 - 1e-6 <= found - centre <= 180.0 + 1e-6
+
+
+@given(direction=st.floats(-180.0, 179.9), turn=st.integers(-100, 100), noise=st.floats(-1e-12, 1e-12))
+def test_an_edge_is_not_crossed_by_rounding(direction: float, turn: int, noise: float) -> None:
+    centre = 360.0 * turn
+    assert _scalar.nearest_period(direction + noise, centre) == pytest.approx(direction + centre, abs=1e-9)
+
+
+@given(angle=ANGLES, centre=ANGLES, half=st.floats(0.0, math.pi))
+def test_nearest_on_arc_stays_on_the_arc(angle: float, centre: float, half: float) -> None:
+    found = _scalar.nearest_on_arc(angle, centre, half)
+    assert centre - half - 1e-9 <= found <= centre + half + 1e-9
+    if abs(angle - centre) <= half:
+        assert found == pytest.approx(angle, abs=1e-9)
+
+
+@given(size=SIZES)
+def test_root_is_total(size: float) -> None:
+    assert _scalar.root(size) == math.sqrt(max(0.0, size))
+
+
+def test_select_and_absolute() -> None:
+    values = np.array([-1.0, 2.0])
+    assert list(_array.select(values > 0.0, values, 7.0)) == [7.0, 2.0]
+    assert list(_array.absolute(values)) == [1.0, 2.0]
+
+
+def test_a_row_keeps_its_first_failure_and_nan_is_one() -> None:
+    values = np.array([0.0, 1.0, 5.0, math.nan])
+    status = _array.passed((values,))
+    _array.require(status, values <= 2.0, Status.UNREACHABLE)
+    _array.require(status, values <= 0.5, Status.IMPOSSIBLE)
+    assert list(status) == [Status.OK, Status.IMPOSSIBLE, Status.UNREACHABLE, Status.UNREACHABLE]
