@@ -1,0 +1,48 @@
+"""Which type fits where without a conversion. Stricter than CODESYS: nothing is ever lost silently."""
+
+import re
+
+from . import st_types as types
+
+_CONVERSION = re.compile(r"(\w+?)_TO_(\w+)\Z")
+
+
+def fits(given: types.Type, wanted: types.Type) -> bool:
+    """May a value of the given type be assigned to the wanted type?"""
+    if given == wanted:
+        return not isinstance(given, types.NoResult)
+    if isinstance(given, types.IntegerLiteral):
+        if isinstance(wanted, types.Integer):
+            return wanted.low <= given.value <= wanted.high
+        return isinstance(wanted, types.Real)
+    if isinstance(given, types.Integer) and isinstance(wanted, types.Integer):
+        return given.widens_to(wanted)
+    if isinstance(given, types.String) and isinstance(wanted, types.String):
+        return given.length <= wanted.length
+    if isinstance(given, types.Address) and isinstance(wanted, types.Pointer):
+        return _memory_of_reals(given.of) and _memory_of_reals(wanted.target)
+    return False
+
+
+def _memory_of_reals(of: types.Type) -> bool:
+    return isinstance(of, types.Opaque) or (isinstance(of, types.Array) and of.element == types.LREAL)
+
+
+def common(left: types.Type, right: types.Type) -> types.Type | None:
+    """The type in which two numbers meet, or None."""
+    if isinstance(left, types.IntegerLiteral) and isinstance(right, types.IntegerLiteral):
+        return types.DINT
+    if fits(left, right):
+        return right
+    return left if fits(right, left) else None
+
+
+def conversion(name: str) -> tuple[types.Type, types.Type] | None:
+    """Source and target of a conversion function X_TO_Y."""
+    match = _CONVERSION.match(name.upper())
+    if match is None:
+        return None
+    source, target = (types.ELEMENTARY.get(part) for part in match.groups())
+    if source is None or target is None or source == target:
+        return None
+    return source, target

@@ -1,0 +1,73 @@
+"""Words of a text: what is refused by name alone, and where objects and their members begin and end."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from .faults import Place, StError
+
+_TOKEN = re.compile(
+    r"(?P<comment>\(\*.*?\*\)|//[^\n]*)"
+    r"|(?P<pragma>\{[^}]*\})"
+    r"|(?P<string>'(?:\$.|[^'$])*')"
+    r"|(?P<word>[A-Za-z_]\w*)"
+    r"|(?P<number>\d[\d_]*(?:\.\d+)?(?:[eE][+-]?\d+)?)"
+    r"|(?P<power>\*\*)"
+    r"|(?P<other>\S)",
+    re.DOTALL,
+)
+
+# These exist in some dialects only, or mean different things in them.
+REFUSED_WORDS = {
+    "AND_THEN",
+    "OR_ELSE",
+    "CONTINUE",
+    "REFERENCE",
+    "ATAN2",
+    "FLOOR",
+    "CEIL",
+    "EXPT",
+    "JMP",
+    "REPEAT",
+    "GOTO",
+    "INTERFACE",
+    "UNION",
+    "VAR_STAT",
+    "VAR_INST",
+    "VAR_TEMP",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    kind: str
+    text: str
+    start: int
+    end: int
+    line: int
+
+    @property
+    def word(self) -> str:
+        return self.text.upper() if self.kind == "word" else ""
+
+
+def tokens(text: str) -> Iterator[Token]:
+    line, last = 1, 0
+    for match in _TOKEN.finditer(text):
+        line += text.count("\n", last, match.start())
+        last = match.start()
+        yield Token(str(match.lastgroup), match.group(), match.start(), match.end(), line)
+
+
+def refuse_words(text: str, file: str) -> None:
+    """Raise StError for what the dialect excludes whatever its place."""
+    for token in tokens(text):
+        at = Place(file, token.line)
+        if token.kind == "comment" and "(*" in token.text[2:] and token.text[0] == "(":
+            raise StError(at, "nested comment")
+        if token.kind == "power":
+            raise StError(at, "the operator ** is not part of the dialect")
+        if token.word in REFUSED_WORDS:
+            raise StError(at, f"{token.text} is not part of the dialect")
+        if token.word and "__" in token.word:
+            raise StError(at, f"double underscore in the name {token.text}")

@@ -1,0 +1,129 @@
+"""The public side of the harness: compile texts, make instances, call them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import lru_cache
+from itertools import count
+from typing import Any
+
+from . import ast, python_names, stubs
+from . import st_types as types
+from .check import check
+from .check_expressions import block_parameters
+from .faults import Place, StError, StFault
+from .initial_values import default, initial
+from .instance import Entry, Function, Instance, Origin
+from .parse import parse
+from .runtime import ENVIRONMENT, Cell, Matrix
+from .translate import translate
+from .translate_statements import Source
+from .universe import Universe
+
+__all__ = ["Cell", "Library", "StError", "StFault", "compile_st"]
+
+_numbers = count(1)
+
+
+def compile_st(texts: Mapping[str, str], order: str = "rows", matrix_size: int = 72, max_config_data: int = 31) -> Library:
+    """Parse, check and translate texts (name -> Structured Text). Raises StError."""
+    universe = Universe()
+    universe.declare("SM3M", "SMC_Matrix3", types.Opaque("SMC_Matrix3", matrix_size), Place("SM3M", 0))
+    library_declarations: list[ast.Declaration] = []
+    for space, declarations in _stub_declarations(max_config_data).items():
+        universe.add(list(declarations), space)
+        library_declarations += declarations
+    own = [declaration for file, text in texts.items() for declaration in parse(text, file)]
+    universe.add(own, "")
+    everything = library_declarations + own
+    facts = check(universe, everything)
+    source = translate(universe, everything, facts, stubs.EXTRA_INITIALISATION)
+    return Library(universe, own, source, stubs.MatrixAccess(order), matrix_size)
+
+
+@lru_cache
+def _stub_declarations(max_config_data: int) -> dict[str, tuple[ast.Declaration, ...]]:
+    return {space: tuple(parse(text, space)) for space, text in stubs.texts(max_config_data).items()}
+
+
+class Library:
+    """Compiled texts. `objects` holds their declarations by name, in the order of the texts."""
+
+    def __init__(
+        self,
+        universe: Universe,
+        own: list[ast.Declaration],
+        source: Source,
+        access: stubs.MatrixAccess,
+        matrix_size: int,
+    ) -> None:
+        # Typed loosely: what a declaration has depends on its kind, and a test knows the kind.
+        self.objects: dict[str, Any] = {declaration.name: declaration for declaration in own}
+        self.python = "\n".join(source.lines)
+        self.origin = Origin(f"<structured text {next(_numbers)}>", source.places)
+        self._universe = universe
+        self._access = access
+        self._functions: dict[str, Function] = {}
+        self._names: dict[str, Any] = dict(ENVIRONMENT)
+        self._names["Instance"] = type("Instance", (Instance,), {"__slots__": (), "origin": self.origin})
+        self._names["class_smc_matrix3"] = type("Matrix3", (Matrix,), {"__slots__": (), "size": matrix_size})
+        for name, function in stubs.natives(access).items():
+            self._names["function_" + name] = function
+        exec(compile(self.python, self.origin.filename, "exec"), self._names)
+        self._list_routines()
+
+    def _list_routines(self) -> None:
+        """Give every class of a block the table of what Python may call on it."""
+        for declaration in self.objects.values():
+            found = self._universe.find(declaration.name)
+            if isinstance(found, types.Block):
+                made = self._names[python_names.type_class(found)]
+                made.routines = self._routines(found)
+                made.cells = frozenset(p.name for p in block_parameters(found) if p.is_reference and types.is_scalar(p.type))
+
+    def _routines(self, block: types.Block) -> dict[str, Entry]:
+        inherited = self._routines(block.base) if block.base else {}
+        made = self._names[python_names.type_class(block)]
+        own = {
+            key: self._entry(getattr(made, python_names.method(routine.name)), routine) for key, routine in block.methods.items()
+        }
+        return inherited | own
+
+    def _entry(self, function: Any, routine: types.Routine) -> Entry:
+        defaults = [
+            eval(f"lambda: {initial(parameter, self._universe.meaning)}", self._names) for parameter in routine.parameters
+        ]
+        return Entry(function, routine, defaults)
+
+    def new(self, name: str) -> Any:
+        """A fresh instance of a block, or a fresh value of a declared or library type."""
+        found = self._universe.find_path(name)
+        if not isinstance(found, types.Type):
+            raise KeyError(f"{name} is no type")
+        return eval(default(found), self._names)
+
+    def function(self, name: str) -> Function:
+        if name not in self._functions:
+            self._functions[name] = self._find_function(name)
+        return self._functions[name]
+
+    def _find_function(self, name: str) -> Function:
+        found = self._universe.find_path(name)
+        if not isinstance(found, types.Routine):
+            raise KeyError(f"{name} is no function")
+        return Function(self._entry(self._names[python_names.function(found)], found), self.origin)
+
+    def constant(self, name: str) -> Any:
+        """The value of a global variable or constant."""
+        found = self._universe.find_path(name)
+        if not isinstance(found, types.Variable):
+            raise KeyError(f"{name} is no global variable")
+        kept = self._names.get(python_names.global_variable(found))
+        return eval(initial(found, self._universe.meaning), self._names) if kept is None else kept
+
+    def set_rotation(self, matrix: Matrix, rows: stubs.Rows) -> None:
+        """Write a rotation, given as rows, in the storage order of this library."""
+        self._access.set(matrix, rows)
+
+    def get_rotation(self, matrix: Matrix) -> stubs.Rows:
+        return self._access.get(matrix)

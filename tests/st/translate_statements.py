@@ -1,0 +1,173 @@
+"""Python source of checked statements and of the frame round them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from . import ast, constants, python_names
+from . import st_types as types
+from .facts import Facts, Scope
+from .faults import Place
+from .initial_values import literal
+from .runtime import LOOP_CAP
+from .translate_expressions import Expressions
+
+
+@dataclass
+class Source:
+    """Lines of Python and, for each, the place in the text it comes from."""
+
+    lines: list[str] = field(default_factory=list)
+    places: list[Place | None] = field(default_factory=list)
+    depth: int = 0
+
+    def add(self, line: str, at: Place | None = None) -> None:
+        self.lines.append("    " * self.depth + line)
+        self.places.append(at)
+
+
+class Statements:
+    def __init__(self, source: Source, scope: Scope, facts: Facts, leave: list[str]) -> None:
+        self.source = source
+        self.scope = scope
+        self.facts = facts
+        self.leave = leave  # the lines that hand outputs and result to the caller
+        self.code = Expressions(scope, facts)
+        self.loops = 0
+
+    def body(self, statements: tuple[ast.Statement, ...]) -> None:
+        self.source.depth += 1
+        for statement in statements:
+            self._statement(statement)
+        if not statements:
+            self.source.add("pass")
+        self.source.depth -= 1
+
+    def _statement(self, node: ast.Statement) -> None:
+        match node:
+            case ast.Assign():
+                target_type = self.facts.type_of[node.target]
+                self._store(node.target, self.code.value(node.value, target_type), node.at)
+            case ast.CallStatement():
+                self._call(node)
+            case ast.If():
+                self._if(node)
+            case ast.Case():
+                self._case(node)
+            case ast.For():
+                self._for(node)
+            case ast.While():
+                self._while(node)
+            case ast.Exit():
+                self.source.add("break", node.at)
+            case ast.Return():
+                for line in self.leave:
+                    self.source.add(line, node.at)
+
+    def _store(self, target: ast.Expression, value: str, at: Place) -> None:
+        """Structures, matrices and arrays change in place, so that references to them stay good."""
+        of = self.facts.type_of[target]
+        if isinstance(target, ast.Index) and isinstance(target.object, ast.Dereference):
+            pointer, offset = self.code.value(target.object.pointer), self.code.offset(target)
+            self.source.add(f"poke({pointer}, {offset}, {value})", at)
+        elif isinstance(of, (types.Struct, types.Opaque)):
+            self.source.add(f"{self.code.value(target)}._assign({value})", at)
+        elif isinstance(of, types.Array):
+            place = self.code.value(target)
+            whole = f"{place}[:] = {value}" if types.is_scalar(of.element) else f"assign_elements({place}, {value})"
+            self.source.add(whole, at)
+        else:
+            self.source.add(f"{self.code.value(target)} = {value}", at)
+
+    # ---- calls of instances ------------------------------------------------------------
+    def _call(self, node: ast.CallStatement) -> None:
+        bound = self.facts.calls[node.call]
+        if not isinstance(bound.callee, types.Block):
+            self.source.add(self.code.value(node.call), node.at)
+            return
+        instance = self.code.value(node.call.function)
+        for parameter, given in bound.arguments:
+            if given is not None and parameter.scope != "VAR_OUTPUT":
+                self._hand_over(f"{instance}.{python_names.attribute(parameter.name)}", parameter, given)
+        self.source.add(f"{instance}.body()", node.at)
+        for parameter, given in bound.arguments:
+            if given is not None and parameter.scope == "VAR_OUTPUT":
+                self._store(given, f"{instance}.{python_names.attribute(parameter.name)}", node.at)
+
+    def _hand_over(self, place: str, parameter: types.Variable, given: ast.Expression) -> None:
+        if parameter.is_reference:
+            self.source.add(f"{place} = {self.code.reference(given)}", given.at)
+            return
+        value = self.code.value(given, parameter.type)
+        if types.is_scalar(parameter.type):
+            self.source.add(f"{place} = {value}", given.at)
+        elif isinstance(parameter.type, types.Array):
+            self.source.add(f"{place}[:] = {value}", given.at)
+        else:
+            self.source.add(f"{place}._assign({value})", given.at)
+
+    # ---- control -----------------------------------------------------------------------
+    def _if(self, node: ast.If) -> None:
+        for number, branch in enumerate(node.branches):
+            word = "elif" if number else "if"
+            self.source.add(f"{word} {self.code.value(branch.condition)}:", branch.condition.at)
+            self.body(branch.body)
+        if node.otherwise:
+            self.source.add("else:")
+            self.body(node.otherwise)
+
+    def _case(self, node: ast.Case) -> None:
+        self.loops += 1
+        subject = f"_case{self.loops}"
+        self.source.add(f"{subject} = {self.code.value(node.subject)}", node.at)
+        word = "if"
+        for branch in node.branches:
+            tests = " or ".join(self._label(subject, label) for label in branch.labels)
+            self.source.add(f"{word} {tests}:", branch.labels[0].at)
+            self.body(branch.body)
+            word = "elif"
+        if node.otherwise:
+            self.source.add("else:" if node.branches else "if True:")
+            self.body(node.otherwise)
+
+    def _label(self, subject: str, label: ast.Label) -> str:
+        lower = self._constant(label.lower)
+        if label.upper is None:
+            return f"{subject} == {lower}"
+        return f"{lower} <= {subject} <= {self._constant(label.upper)}"
+
+    def _constant(self, node: ast.Expression) -> str:
+        return literal(constants.evaluate(node, self.scope.meaning), types.DINT)
+
+    def _count(self, counter: str, at: Place) -> None:
+        self.source.depth += 1
+        self.source.add(f"{counter} += 1", at)
+        self.source.add(f"if {counter} > {LOOP_CAP}: unbounded()", at)
+        self.source.depth -= 1
+
+    def _while(self, node: ast.While) -> None:
+        self.loops += 1
+        counter = f"_count{self.loops}"
+        self.source.add(f"{counter} = 0", node.at)
+        self.source.add(f"while {self.code.value(node.condition)}:", node.at)
+        self._count(counter, node.at)
+        self.body(node.body)
+
+    def _for(self, node: ast.For) -> None:
+        self.loops += 1
+        counter, stop = f"_count{self.loops}", f"_stop{self.loops}"
+        of = self.facts.type_of[node.control]
+        assert isinstance(of, types.Integer)
+        control = self.code.value(node.control)
+        step = 1 if node.step is None else constants.whole(node.step, self.scope.meaning)
+        self.source.add(f"{control} = {self.code.value(node.start, of)}", node.at)
+        self.source.add(f"{stop} = {self.code.value(node.stop, of)}", node.at)
+        self.source.add(f"{counter} = 0", node.at)
+        self.source.add(f"while {control} {'<=' if step > 0 else '>='} {stop}:", node.at)
+        self._count(counter, node.at)
+        self.body(node.body)
+        self.source.depth += 1
+        # A control variable that cannot step past its end would run for ever on a controller.
+        advanced = f"(_i if {of.low} <= (_i := {control} + {step}) <= {of.high} else overflow(_i))"
+        self.source.add(f"{control} = {advanced}", node.at)
+        self.source.depth -= 1

@@ -1,0 +1,70 @@
+"""Who may write what: constants, inputs, and the rule that only Initialize changes an instance."""
+
+from . import ast
+from . import st_types as types
+from .facts import Facts, Scope
+from .faults import StError
+
+
+def root(node: ast.Expression, facts: Facts) -> types.Variable | None:
+    """The variable in which the memory of an expression lies; None behind a pointer."""
+    if isinstance(node, ast.Index):
+        return root(node.object, facts)
+    meaning = facts.meanings.get(node)
+    if isinstance(node, ast.Member) and isinstance(meaning, types.Variable) and meaning.scope == "FIELD":
+        return root(node.object, facts)
+    if isinstance(node, ast.Member) and not isinstance(node.object, (ast.This, ast.Super)):
+        outer = root(node.object, facts)
+        return outer if outer is not None else _variable(meaning)
+    return _variable(meaning)
+
+
+def _variable(meaning: types.Meaning | None) -> types.Variable | None:
+    return meaning if isinstance(meaning, types.Variable) else None
+
+
+def is_place(node: ast.Expression, facts: Facts) -> bool:
+    """Does the expression name memory, rather than a value?"""
+    if isinstance(node, (ast.Index, ast.Dereference)):
+        return True
+    return isinstance(node, (ast.Name, ast.Member)) and isinstance(facts.meanings.get(node), types.Variable)
+
+
+def check_write(node: ast.Expression, scope: Scope, facts: Facts) -> None:
+    """Raise StError when the body may not write to this place. The node must be typed already."""
+    if not is_place(node, facts):
+        raise StError(node.at, "this is not a variable that can be written")
+    _check_foreign(node, facts)
+    variable = root(node, facts)
+    if variable is None:
+        return
+    if variable.constant:
+        what = "VAR_IN_OUT CONSTANT" if variable.is_reference else "constant"
+        raise StError(node.at, f"write to the {what} {variable.name}")
+    if variable.scope == "RESULT":
+        scope.result_assigned = True
+    if variable.scope == "VAR_GLOBAL" and scope.is_method:
+        raise StError(node.at, f"a method writes the global variable {variable.name}")
+    if variable.member_of is not None:
+        _check_member(variable, node, scope)
+
+
+def _check_foreign(node: ast.Expression, facts: Facts) -> None:
+    """Of another instance only the inputs can be written, as a whole or in part."""
+    while isinstance(node, (ast.Member, ast.Index)):
+        meaning = facts.meanings.get(node)
+        if isinstance(meaning, types.Variable) and meaning.member_of is not None and isinstance(node, ast.Member):
+            foreign = not isinstance(node.object, (ast.This, ast.Super))
+            if foreign and meaning.scope != "VAR_INPUT":
+                raise StError(node.at, f"{meaning.name} is no input of {meaning.member_of.name}")
+        node = node.object
+
+
+def _check_member(variable: types.Variable, node: ast.Expression, scope: Scope) -> None:
+    if scope.is_method and variable.scope == "VAR_INPUT":
+        raise StError(node.at, f"a method writes the input {variable.name}")
+    if scope.is_method and scope.owner.lower() != "initialize":
+        raise StError(node.at, f"only Initialize may write the instance variable {variable.name}")
+    block = scope.block
+    if not scope.is_method and block is not None and block.methods and block.declaration.kind != "PROGRAM":
+        raise StError(node.at, f"the body of a block with methods writes {variable.name}")
