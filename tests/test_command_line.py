@@ -1,0 +1,205 @@
+"""`python -m derive`: what it writes, and what it says about a file that is wrong."""
+
+from __future__ import annotations
+
+import pickle
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from derive.__main__ import OUTPUT, main
+from derive.build import build
+from derive.catalogue import MECHANISMS, catalogue, load
+from derive.folder import differences
+
+SCARA = MECHANISMS / "kin_scara4_zccoupled_type1.py"
+ROOT = MECHANISMS.parents[1]
+
+BROKEN: dict[str, tuple[str, str, str]] = {
+    "no Python": ("MECHANISM = Mechanism(", "MECHANISM = Mechanism((", r"broken\.py:\d+: SyntaxError: "),
+    "an undefined name": ("Rz(A4)", "Rz(A9)", r"broken\.py:\d+: NameError: name 'A9' is not defined"),
+    "a misspelt field": ("family=", "famliy=", r"broken\.py:\d+: TypeError: .*'famliy'"),
+    "no description": ("MECHANISM =", "SCARA =", r"broken\.py: defines no MECHANISM"),
+    "a parameter outside its range": (
+        "high=800.0, nominal=325.0",
+        "high=300.0, nominal=325.0",
+        r"broken\.py: parameter 'link_length_1': its nominal value 325 is outside its range \]0 \.\. 300\]",
+    ),
+    "a default outside its range": (
+        "low=-200.0, high=200.0",
+        "low=5.0, high=200.0",
+        r"broken\.py: parameter 'pitch_zc': its default 0 is outside its range \[5 \.\. 200\]",
+    ),
+    "an empty range": (
+        "offset_range=(-720.0, 720.0)",
+        "offset_range=(720.0, -720.0)",
+        r"broken\.py: joint 'A4': its offset_range \(720\.0, -720\.0\) is empty",
+    ),
+    "a joint that is not the mechanism's": (
+        "joints=(A1, A2, A3, A4)",
+        "joints=(A1, A3, A4)",
+        r"broken\.py: periods names 'A2', which is no multi-turn joint",
+    ),
+    "an unknown joint in the chain": (
+        "joints=(A1, A2, A3, A4),",
+        "joints=(A1, A2, A4),",
+        r"broken\.py: chain reads 'a3', which is not a joint or a parameter of this mechanism",
+    ),
+    "an unknown joint in a branch": (
+        "sin(A2), right",
+        "sin(rotary('A7', 'another')), right",
+        r"broken\.py: branch 'elbow' reads 'a7', which is not a joint or a parameter",
+    ),
+    "a branch of no joint": (
+        "sin(A2), right",
+        "sin(L1), right",
+        r"broken\.py: branch 'elbow': its indicator sin\(link_length_1\) depends on no joint",
+    ),
+    "a branch with one side": (
+        "left=-1",
+        "left=+1",
+        r"broken\.py: branch 'elbow' needs two names with the signs \+1 and -1",
+    ),
+    "a branch that no root has": (
+        "sin(A2), right",
+        "sin(A1), right",
+        r"broken\.py: branch 'elbow': ",
+    ),
+    "a joint that moves nothing": (
+        "Tz(A3 - P * A4 / TURN)",
+        "Tz(-P * A4 / TURN)",
+        r"broken\.py: joint 'A3' occurs nowhere in the closure",
+    ),
+    "an under-constrained closure": (
+        'Task("xyz", Turning.ABOUT_Z)',
+        'Task("xyz")',
+        r"broken\.py: no subproblem determines a3, a4",
+    ),
+    "the same joint twice": (
+        "joints=(A1, A2, A3, A4)",
+        "joints=(A1, A2, A3, A4, A1)",
+        r"broken\.py: joint 'a1' is given 2 times",
+    ),
+    "the same parameter twice": (
+        "parameters=(L1, L2, P)",
+        "parameters=(L1, L2, P, L1)",
+        r"broken\.py: parameter 'link_length_1' is given 2 times",
+    ),
+}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A catalogue of one correct mechanism."""
+    mechanisms = tmp_path / "mechanisms"
+    mechanisms.mkdir()
+    (mechanisms / "right.py").write_text(SCARA.read_text().replace("Kin_Scara4_ZCcoupled_Type1", "Kin_Right"))
+    return mechanisms
+
+
+def refusal(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
+    """The one message of a command that must fail."""
+    assert main([str(a) for a in arguments]) == 1
+    message = capsys.readouterr().err
+    assert message.count("\n") == 1
+    assert message.startswith("error: ")
+    return message
+
+
+@pytest.mark.parametrize("what", BROKEN)
+def test_a_broken_file_is_one_clear_message(folder: Path, capsys: pytest.CaptureFixture[str], what: str) -> None:
+    old, new, expected = BROKEN[what]
+    text = SCARA.read_text()
+    assert text.count(old) == 1
+    (folder / "broken.py").write_text(text.replace(old, new))
+    output = folder.parent / "generated"
+    (output / "python").mkdir(parents=True)
+    (output / "python" / "kept.py").write_text("kept")
+    message = refusal(capsys, "generate", "--mechanisms", folder, "--output", output)
+    assert re.search(expected, message), message
+    assert [p.name for p in output.rglob("*") if p.is_file()] == ["kept.py"]
+    assert sorted(p.name for p in folder.parent.iterdir()) == ["generated", "mechanisms"]
+
+
+def test_two_files_with_one_name(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "twin.py").write_text((folder / "right.py").read_text())
+    message = refusal(capsys, "generate", "--mechanisms", folder, "--output", folder.parent / "out")
+    assert "twin.py: the name 'Kin_Right' is taken by" in message
+
+
+def test_no_traceback_and_exit_status_1(folder: Path) -> None:
+    (folder / "broken.py").write_text("from derive.mechanism import nothing\n")
+    command = [sys.executable, "-m", "derive", "generate", "--mechanisms", str(folder), "--output", str(folder / "out")]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr.startswith("error: ")
+    assert "broken.py:1: ImportError: cannot import name 'nothing'" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_generate_replaces_orphans_and_check_finds_them(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    output = folder.parent / "generated"
+    options = ("--mechanisms", str(folder), "--output", str(output))
+    assert main(["generate", *options]) == 0
+    assert re.search(r"^Kin_Right +\d+ statements .*2 solutions", capsys.readouterr().out)
+    assert main(["check", *options]) == 0
+    orphan = output / "st" / "Kin_Orphan.st"
+    orphan.write_text("")
+    assert "Kin_Orphan.st is generated by no mechanism: run `make generate`" in refusal(capsys, "check", *options)
+    assert main(["generate", *options]) == 0
+    assert not orphan.exists()
+    source = next((output / "st").rglob("*.st"))
+    source.write_text(source.read_text() + "\n")
+    assert f"{source.name} differs from a fresh generation" in refusal(capsys, "check", *options)
+    source.unlink()
+    assert f"{source.name} is missing" in refusal(capsys, "check", *options)
+
+
+def test_a_folder_with_other_files_is_never_replaced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    message = refusal(capsys, "generate", "--mechanisms", folder, "--output", folder.parent)
+    assert "holds 'mechanisms', which was not generated: it is not replaced" in message
+    assert folder.exists()
+
+
+def test_only_never_shrinks_the_output_of_the_project(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert "--only needs --output" in refusal(capsys, "generate", "--only", "Kin_PCC")
+    assert "no mechanism is called 'Kin_No'" in refusal(capsys, "generate", "--only", "Kin_No", "--output", tmp_path / "out")
+
+
+def test_only_writes_the_chosen_mechanisms(folder: Path, tmp_path: Path) -> None:
+    text = (folder / "right.py").read_text()
+    (folder / "other.py").write_text(text.replace("Kin_Right", "Kin_Other"))
+    output = tmp_path / "out"
+    assert main(["generate", "--mechanisms", str(folder), "--output", str(output), "--only", "Kin_Other"]) == 0
+    names = " ".join(p.name for p in output.rglob("*"))
+    assert "Kin_Other" in names
+    assert "Kin_Right" not in names
+
+
+def test_an_alias_is_a_mechanism_of_its_own(folder: Path) -> None:
+    path = folder / "right.py"
+    path.write_text(path.read_text().replace("    source=", '    aliases=("Kin_Also_Right",),\n    source='))
+    (_, first), (_, second) = catalogue(folder)
+    assert (first.name, second.name) == ("Kin_Right", "Kin_Also_Right")
+    assert second.aliases == ()
+    assert second.title is None
+    assert second.joints == first.joints
+
+
+def test_what_was_derived_travels_between_processes_unchanged() -> None:
+    kinematics = build(load(SCARA))
+    assert pickle.loads(pickle.dumps(kinematics)) == kinematics
+
+
+def test_by_products_are_no_orphans(tmp_path: Path) -> None:
+    for name in ("a.py", "softkin.egg-info/PKG-INFO", "__pycache__/a.pyc", "build/lib/a.py"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("")
+    assert list(differences(tmp_path, {"a.py": ""})) == []
+
+
+def test_the_project_generates_into_its_own_folder() -> None:
+    assert OUTPUT == ROOT / "generated"

@@ -1,0 +1,27 @@
+"""`generated/` is what a fresh generation gives: byte for byte, whatever the order of hashing, without orphans."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from derive.__main__ import OUTPUT
+from derive.folder import differences
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", ["1", "2"])
+def test_generated_is_fresh(seed: str, tmp_path: Path) -> None:
+    output = tmp_path / "generated"
+    command = [sys.executable, "-m", "derive", "generate", "--output", str(output)]
+    environment = {**os.environ, "PYTHONHASHSEED": seed}
+    done = subprocess.run(command, cwd=OUTPUT.parent, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    files = {str(p.relative_to(output)): p.read_bytes().decode() for p in output.rglob("*") if p.is_file()}
+    assert any(name.startswith("python") for name in files)
+    assert any(name.startswith("st") for name in files)
+    assert list(differences(OUTPUT, files)) == []
