@@ -54,6 +54,9 @@ def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_ze
         agreeing = [(s, o) for s, row in zip(slopes, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)]
         if len(agreeing) != 1:
             raise DescriptionError(f"branch {branch.name!r}: its indicator agrees with {len(agreeing)} steps, not one")
+        first = next((a.branch.name for a in found if a.slope == agreeing[0][0]), None)
+        if first is not None:
+            raise DescriptionError(f"branches {first!r} and {branch.name!r} name the same two solutions")
         found.append(Assignment(branch, *agreeing[0]))
     unnamed = [s for s in slopes if s not in [a.slope for a in found]]
     if unnamed:
@@ -75,6 +78,8 @@ def _signs(
     samples.update({f"point_{c}": np.asarray(0.0) for c in "xyz"})
     values, status = run(program, samples)
     good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
+    if not good.any():
+        raise DescriptionError("no sampled pose is possible: a quantity that must be positive never is")
     rows = [np.sign(np.broadcast_to(values[n.name.name], (_SAMPLES,))[good]) for n in named]
     return rows[: len(slopes)], rows[len(slopes) :]
 

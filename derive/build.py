@@ -26,12 +26,16 @@ from derive.parameters import machine_parameters, setup_program
 from derive.passes import assemble, hoist
 from derive.pose import pose_of
 from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real
+from derive.shared_names import refuse_shared_names
+from derive.solve import Unsolved
 
 
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive everything. Raises `Unsolved` or `DescriptionError` where the description does not allow it."""
+    _count(mechanism)
     forward = pose_at_axes(mechanism)
     inverse = solve_pose(mechanism)
+    refuse_shared_names(mechanism, (*forward.statements, *inverse.naming, *inverse.derivation.statements))
     assignments = assign(mechanism, inverse, forward)
     at_axes = derivation_at_axes(mechanism, inverse, forward)
     margins = margin_lets(mechanism, assignments)
@@ -54,6 +58,16 @@ def build(mechanism: Mechanism) -> Kinematics:
     if mechanism.offset_interface:
         programs += _offset_programs(mechanism, forward)
     return _finished(mechanism, programs, kept)
+
+
+def _count(mechanism: Mechanism) -> None:
+    """More conditions than joints or coordinates cannot be met, and no step would notice."""
+    rows, joints, equations = jacobian_rows(mechanism), mechanism.joints, mechanism.closure
+    commanded = f"{len(rows)} quantities ({', '.join(rows)})"
+    if len(rows) > len(joints):
+        raise DescriptionError(f"the task commands {commanded}, and there are only {len(joints)} joints")
+    if len(equations) > len(rows):
+        raise DescriptionError(f"the closure has {len(equations)} equations, and the task commands only {commanded}")
 
 
 def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...]) -> Kinematics:
@@ -101,8 +115,12 @@ def _measures(inverse: Inverse) -> list[Factor]:
 
 
 def _offset_programs(mechanism: Mechanism, forward: Forward) -> list[Program]:
-    inverse = solve_offset(mechanism)
-    assignments = assign(mechanism, inverse, forward, optional_zero=True)
+    try:
+        inverse = solve_offset(mechanism)
+        refuse_shared_names(mechanism, (*inverse.naming, *inverse.derivation.statements))
+        assignments = assign(mechanism, inverse, forward, optional_zero=True)
+    except (Unsolved, DescriptionError) as problem:
+        raise type(problem)(f"with offset_interface=False it could be built, but for a point off the flange {problem}") from None
     statements = with_branch_signs(inverse.derivation.statements, assignments)
     return [
         inverse_program("offset_branch", mechanism, inverse, statements),
@@ -160,9 +178,10 @@ def _image_program(mechanism: Mechanism) -> Program:
     zero = sp.eye(3)
     axis = sp.Matrix([0, 0, 1])
     if mechanism.chain is not None:
-        zero = sp.Matrix(flange_rotation(mechanism.chain))
+        zero = sp.Matrix(pose_of(mechanism.chain).rotation)
         if _freedom(mechanism) is Freedom.ONE:
             heading_of(mechanism.chain)  # refuses a chain whose rotation is not one turn about z
+            zero = sp.Matrix(flange_rotation(mechanism.chain))
     moving = zero.T * axis
     outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, zero, strict=True)]
     outputs += [Output(f"rot_{c}", v) for c, v in zip("xyz", axis, strict=True)]

@@ -84,7 +84,7 @@ def heading_of(chain: Chain) -> sp.Expr:
     bare, _ = flange_flips(chain)
     turns = pose_of(bare).turns
     if len(turns) != 1 or turns[0].axis != 2:
-        raise DescriptionError("the task commands a turn about z, but the chain's rotation is not one turn about z")
+        raise DescriptionError("the chain must turn the flange about z alone: its rotation is not one turn about z")
     return turns[0].amount
 
 

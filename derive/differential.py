@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
+from numpy.typing import NDArray
 
 from derive.forward import Forward, named_trigonometry
 from derive.frames import Motion
@@ -107,12 +108,24 @@ def _exponents(mechanism: Mechanism, margins: Program, jacobian: Program) -> lis
     matrix = np.stack([np.broadcast_to(v, (64,)) for v in entries.values()], axis=-1).reshape(64, rows, columns)[good]
     volume = np.log(np.sqrt(np.abs(np.linalg.det(matrix @ matrix.transpose(0, 2, 1)))))
     logs = [np.log(np.abs(np.broadcast_to(values[o.name], (64,))[good])) for o in margins.outputs]
-    design = np.stack([*logs, np.ones_like(volume)], axis=-1)
+    own = _independent(logs)
+    design = np.stack([*(logs[k] for k in own), np.ones_like(volume)], axis=-1)
     solution, *_ = np.linalg.lstsq(design, volume, rcond=None)
-    exponents = [int(round(e)) for e in solution[:-1]]
-    fitted = design[:, :-1] @ np.asarray(exponents, dtype=float)
+    found = dict(zip(own, (int(round(e)) for e in solution[:-1]), strict=True))
+    exponents = [found.get(k, 0) for k in range(len(logs))]
+    fitted = sum((e * log for e, log in zip(exponents, logs, strict=True)), np.zeros_like(volume))
     spread = float(np.ptp(volume - fitted)) if volume.size else 0.0
     if spread > 1e-6:
         raise DescriptionError(f"the margins {[o.name for o in margins.outputs]} do not multiply to the determinant")
     return exponents
+
+
+def _independent(logs: Sequence[NDArray[np.float64]]) -> list[int]:
+    """The margins that no earlier ones make up: the measure of a two-root step is the size of its slope."""
+    own: list[int] = []
+    for k in range(len(logs)):
+        columns = np.stack([logs[i] for i in (*own, k)] + [np.ones_like(logs[k])], axis=-1)
+        if np.linalg.matrix_rank(columns, tol=1e-6) == len(own) + 2:
+            own.append(k)
+    return own
 

@@ -17,7 +17,7 @@ from derive.parameters import SCALE
 from derive.passes import assemble
 from derive.pose import pose_of
 from derive.problem import Problem
-from derive.program import BOUNDARY, Let, Output, Program, Require, Select, Statement, Status, real
+from derive.program import BOUNDARY, LIMIT, Let, Output, Program, Require, Select, Statement, Status, real
 from derive.solve import solve
 
 
@@ -57,11 +57,25 @@ def _positive(mechanism: Mechanism) -> tuple[Statement, ...]:
     """Forward kinematics refuses the mirror that the machine does not have."""
     checks: list[Statement] = []
     lengths = {j.symbol for j in mechanism.joints if not j.is_angle}
-    for value in mechanism.positive:
+    bounded = {j.symbol for j in mechanism.joints if j.domain is not None}
+    for value in (v for v in mechanism.positive if not v.free_symbols <= bounded):  # a domain says it already
         scale = SCALE if value.free_symbols & lengths else sp.Integer(1)
         lets, (named,) = named_trigonometry(mechanism, [value])
         condition = sp.Ge(named, -BOUNDARY * scale)
         checks += [*lets, Require(condition, Status.IMPOSSIBLE, "the mirror that the machine does not have")]
+    return (*checks, *_domains(mechanism))
+
+
+def _domains(mechanism: Mechanism) -> tuple[Require, ...]:
+    """A joint without turns has one value for every pose: beyond its domain forward and inverse would not agree."""
+    checks: list[Require] = []
+    for joint in mechanism.joints:
+        if joint.domain is None:
+            continue
+        low, high = (sp.Integer(int(v)) for v in joint.domain)
+        value = joint.axis - joint.offset
+        inside = sp.And(sp.Ge(value, low - LIMIT * (1 + abs(low))), sp.Le(value, high + LIMIT * (1 + abs(high))))
+        checks.append(Require(inside, Status.IMPOSSIBLE, f"{joint.name} where the machine has no pose"))
     return tuple(checks)
 
 

@@ -38,7 +38,9 @@ def candidate_sums(problem: Problem, arguments: Sequence[sp.Expr]) -> tuple[Sum,
     differences = [b - a for a, b in combinations(arguments, 2)]
     found: dict[sp.Symbol, Sum] = {}
     for argument in [*arguments, *differences]:
-        terms = terms_of(sp.expand(argument), problem.angles)
+        expanded = sp.expand(argument)
+        constant = expanded.xreplace(dict.fromkeys(expanded.free_symbols, sp.Integer(0)))  # a turn of the base
+        terms = terms_of(expanded - constant, problem.angles)
         if terms is not None and len(terms) > 1:
             found.setdefault(composite(terms), Sum(composite(terms), terms, terms[-1][0]))
     return tuple(found.values())

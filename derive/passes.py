@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.program import DEGREE, Let, Output, Program, Require, Statement, real, symbols_of
+from derive.program import DEGREE, Let, Output, Program, Require, Root, Statement, real, symbols_of
 from derive.verify import BrokenProgram, verify
 
 
@@ -32,9 +32,15 @@ def with_inputs(program: Program) -> Program:
 
 
 def _bare_expression(value: sp.Basic) -> sp.Expr:
-    """Symbols without assumptions of their own: in a program a name is a name. Pi is 180 degrees."""
+    """Symbols without assumptions of their own: in a program a name is a name. Pi is 180 degrees, a surd a root."""
     table = {s: real(s.name) for s in value.free_symbols if s != DEGREE}
+    if any(_is_surd(power) for power in value.atoms(sp.Pow)):
+        value = value.replace(_is_surd, lambda power: Root(power.base))
     return value.subs(sp.pi, 180 * DEGREE).xreplace(table) if value.has(sp.pi) else value.xreplace(table)
+
+
+def _is_surd(value: sp.Basic) -> bool:
+    return isinstance(value, sp.Pow) and value.is_number and value.exp == sp.Rational(1, 2)
 
 
 def bare(statements: Iterable[Statement]) -> tuple[Statement, ...]:

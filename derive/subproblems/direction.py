@@ -31,10 +31,12 @@ def direction(
     free = _free(problem, angle)
     names = [real(f"{word}_{angle.name}") for word in ("along", "across", "length")]
     cos_name, sin_name, length = names
+    square = cos_name**2 + sin_name**2
+    long_enough = determined if is_length else sp.And(determined, sp.Gt(square, 0))
     return (
         Let(cos_name, along, note),
         Let(sin_name, across),
-        Let(length, Select(determined, measure if is_length else Root(cos_name**2 + sin_name**2), sp.Integer(1))),
+        Let(length, Select(long_enough, measure if is_length else Root(square), sp.Integer(1))),
         Let(cosine(angle), Select(determined, cos_name / length, sp.cos(free)), "its reference where it is free"),
         Let(sine(angle), Select(determined, sin_name / length, sp.sin(free))),
     )

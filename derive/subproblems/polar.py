@@ -39,8 +39,9 @@ def _radius(problem: Problem, equation: Equation, function: sp.Symbol) -> tuple[
         return None
     factor, rest = linear[0][0], linear[1]
     unknown = sp.Mul(*[f for f in sp.Mul.make_args(factor) if problem.unknowns_of(f)])
+    unknown = -unknown if unknown.could_extract_minus_sign() else unknown  # a sum has its minus inside
     constant = sp.cancel(factor / unknown)
-    if not problem.unknowns_of(unknown) or unknown.is_Add or not problem.is_never_zero(constant):
+    if not problem.unknowns_of(unknown) or not problem.is_never_zero(constant):
         return None
     return unknown, -rest / constant
 
@@ -62,12 +63,20 @@ def _solve(
         sigma = real(f"sigma_{angle.name}")
         slope = Slope(sigma, radius, problem.scale)
     known = direction(problem, angle, along=sigma * a, across=sigma * b, measure=distance, note=note, is_length=True)
-    measure = Measure(angle, distance, problem.scale)
+    measure = _measure(problem, angle, radius, distance)
     if radius in problem.lengths:
         statements = (*naming.lets, Let(radius, sigma * distance), *known)
         return Binding("polar", (radius, angle), statements, slope, measure)
     product = Equation(f"{angle.name} radius", radius - sigma * distance)
     return Binding("polar", (angle,), (*naming.lets, *known), slope, measure, (product,))
+
+
+def _measure(problem: Problem, angle: sp.Symbol, radius: sp.Expr, distance: sp.Expr) -> Measure:
+    """Of a product such as r sin(phi) the sine alone, a number without a unit: the step that finds r has its own measure."""
+    functions = [f for f in sp.Mul.make_args(radius) if f not in problem.lengths and f.is_Symbol]
+    if len(functions) == 0 or len(functions) == len(sp.Mul.make_args(radius)):
+        return Measure(angle, distance, problem.scale)
+    return Measure(angle, sp.Mul(*functions), sp.Integer(1))
 
 
 def _is_positive(problem: Problem, radius: sp.Expr) -> bool:

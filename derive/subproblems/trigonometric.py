@@ -53,11 +53,12 @@ def _amplitude(
 ) -> _Amplitude:
     naming = Naming(problem, equation.lets)
     slope = a * sine(angle) - b * cosine(angle)
-    if b == 0 and a.is_positive:
-        return _Amplitude(naming, a, (), sp.Integer(1), sp.Integer(0), e, slope, a)
-    common = sp.gcd(a, b)
-    along = naming.named(sp.cancel(a / common), f"along_{angle.name}")
-    across = naming.named(sp.cancel(b / common), f"across_{angle.name}")
+    common = sp.Mul(*[f for f in sp.Mul.make_args(sp.gcd(a, b)) if f.is_positive])  # it divides, and keeps every sign
+    along, across = sp.cancel(a / common), sp.cancel(b / common)
+    if along.is_number and across.is_number:
+        size = sp.sqrt(along**2 + across**2)
+        return _Amplitude(naming, common * size, (), along / size, across / size, e, slope, common * size)
+    along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
     effective = naming.length(f"effective_{angle.name}", along, across, "effective length that the angle turns")
     aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
     divisor = real(f"divisor_{angle.name}")
@@ -75,7 +76,7 @@ def _amplitude(
 
 def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _Amplitude) -> Binding:
     sigma = real(f"sigma_{angle.name}")
-    turned = amplitude.sin_unit != 0
+    turned = (amplitude.cos_unit, amplitude.sin_unit) != (1, 0)
     scale = real(f"swing_scale_{angle.name}" if turned else f"scale_{angle.name}")
     square = real(f"sine_square_{angle.name}")
     cos_name = real(f"cos_swing_{angle.name}") if turned else cosine(angle)

@@ -18,7 +18,7 @@ def reals(values: Numbers, count: int, what: str) -> tuple[float, ...]:
     try:
         found = tuple(array("d", iter(values)))
     except (TypeError, ValueError, OverflowError) as error:
-        raise _bad(f"{what} must be {count} numbers, not {values!r}") from error
+        raise _bad(f"{what} must be {count} numbers, not {_shown(values)}") from error
     if len(found) != count:
         raise _bad(f"{what} must be {count} numbers, not {len(found)}")
     return found
@@ -42,7 +42,7 @@ def rotation_by_rows(rows: Iterable[Numbers]) -> Rotation:
     try:
         (a, b, c), (d, e, f), (g, h, i) = rows
     except (TypeError, ValueError) as error:
-        raise _bad(f"rotation must be three rows of three numbers, not {rows!r}") from error
+        raise _bad(f"rotation must be three rows of three numbers, not {_shown(rows)}") from error
     a, b, c, d, e, f, g, h, i = reals((a, b, c, d, e, f, g, h, i), 9, "rotation")
     return (a, b, c), (d, e, f), (g, h, i)
 
@@ -52,7 +52,7 @@ def bytes_of(configuration: Iterable[int], count: int) -> tuple[int, ...]:
     try:
         found = tuple(array("h", iter(configuration)))
     except (TypeError, OverflowError) as error:
-        raise _bad(f"configuration must be {count} bytes, not {configuration!r}") from error
+        raise _bad(f"configuration must be {count} bytes, not {_shown(configuration)}") from error
     if len(found) != count:
         raise _bad(f"configuration must be {count} bytes, not {len(found)}")
     if found and not (min(found) >= -128 and max(found) <= 127):
@@ -101,3 +101,9 @@ def _halves(frame: FrameLike) -> FrameLike:
 
 def _bad(message: str) -> KinematicsError:
     return KinematicsError(Status.BAD_INPUT, message)
+
+
+def _shown(value: object) -> str:
+    """A value for a message: one line, not too long."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 80 else f"{text[:77]}..."

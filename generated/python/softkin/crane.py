@@ -235,24 +235,23 @@ class Crane(OffsetKinematics):
         """Position, rotation and the signed margin of every branch."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        machine_scale = k.machine_scale
         offset_phi = k.offset_phi
         offset_r = k.offset_r
         offset_theta = k.offset_theta
         # numbers of reasonable size
         if not (abs(axis_phi) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_theta) <= 1e9):
             return Status.BAD_INPUT
+        # R where the machine has no pose
+        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
+            return Status.IMPOSSIBLE
+        # Phi where the machine has no pose
+        if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
+            return Status.IMPOSSIBLE
         r = axis_r - offset_r
-        # the mirror that the machine does not have
-        if not (r >= -1e-12*machine_scale):
-            return Status.IMPOSSIBLE
-        phi = DEGREE*(axis_phi - offset_phi)
-        sin_phi = sin(phi)
-        # the mirror that the machine does not have
-        if not (sin_phi >= -1e-12):
-            return Status.IMPOSSIBLE
         theta = DEGREE*(axis_theta - offset_theta)
         cos_theta = cos(theta)
+        phi = DEGREE*(axis_phi - offset_phi)
+        sin_phi = sin(phi)
         x = r*cos_theta*sin_phi  # x: affine in the x equation
         sin_theta = sin(theta)
         y = r*sin_phi*sin_theta  # y: affine in the y equation
@@ -264,20 +263,16 @@ class Crane(OffsetKinematics):
         """The rotation of the frame."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        machine_scale = k.machine_scale
         offset_phi = k.offset_phi
         offset_r = k.offset_r
         # numbers of reasonable size
         if not (abs(axis_phi) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_theta) <= 1e9):
             return Status.BAD_INPUT
-        r = axis_r - offset_r
-        # the mirror that the machine does not have
-        if not (r >= -1e-12*machine_scale):
+        # R where the machine has no pose
+        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
-        phi = DEGREE*(axis_phi - offset_phi)
-        sin_phi = sin(phi)
-        # the mirror that the machine does not have
-        if not (sin_phi >= -1e-12):
+        # Phi where the machine has no pose
+        if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -361,50 +356,48 @@ class Crane(OffsetKinematics):
         # numbers of reasonable size
         if not (abs(axis_phi) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_theta) <= 1e9):
             return Status.BAD_INPUT
-        r = axis_r - offset_r
-        # the mirror that the machine does not have
-        if not (r >= -1e-12*machine_scale):
+        # R where the machine has no pose
+        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
+            return Status.IMPOSSIBLE
+        # Phi where the machine has no pose
+        if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
         phi = DEGREE*(axis_phi - offset_phi)
         sin_phi = sin(phi)
-        # the mirror that the machine does not have
-        if not (sin_phi >= -1e-12):
-            return Status.IMPOSSIBLE
+        r = axis_r - offset_r
+        cos_phi = cos(phi)
+        z = r*cos_phi  # z: affine in the z equation
         theta = DEGREE*(axis_theta - offset_theta)
         cos_theta = cos(theta)
         x = r*cos_theta*sin_phi  # x: affine in the x equation
         sin_theta = sin(theta)
         y = r*sin_phi*sin_theta  # y: affine in the y equation
         radius_theta = root(x*x + y*y)  # theta: direction and distance of a point
-        margin_free_theta = radius_theta/machine_scale
-        cos_phi = cos(phi)
-        z = r*cos_phi  # z: affine in the z equation
         radius_phi = root(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         margin_free_phi = radius_phi/machine_scale
-        return (margin_free_theta, margin_free_phi)
+        return (sin_phi, margin_free_phi)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        machine_scale = k.machine_scale
         offset_phi = k.offset_phi
         offset_r = k.offset_r
         offset_theta = k.offset_theta
         # numbers of reasonable size
         if not (abs(axis_phi) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_theta) <= 1e9):
             return Status.BAD_INPUT
-        r = axis_r - offset_r
-        # the mirror that the machine does not have
-        if not (r >= -1e-12*machine_scale):
+        # R where the machine has no pose
+        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
+            return Status.IMPOSSIBLE
+        # Phi where the machine has no pose
+        if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
         phi = DEGREE*(axis_phi - offset_phi)
         sin_phi = sin(phi)
-        # the mirror that the machine does not have
-        if not (sin_phi >= -1e-12):
-            return Status.IMPOSSIBLE
         theta = DEGREE*(axis_theta - offset_theta)
         cos_theta = cos(theta)
+        r = axis_r - offset_r
         sin_theta = sin(theta)
         cos_phi = cos(phi)
         return (
@@ -476,20 +469,16 @@ class Crane(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_r, axis_theta, axis_phi = axes
         k = self._constants
-        machine_scale = k.machine_scale
         offset_phi = k.offset_phi
         offset_r = k.offset_r
         # numbers of reasonable size
         if not (abs(axis_phi) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_theta) <= 1e9):
             return Status.BAD_INPUT
-        r = axis_r - offset_r
-        # the mirror that the machine does not have
-        if not (r >= -1e-12*machine_scale):
+        # R where the machine has no pose
+        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
-        phi = DEGREE*(axis_phi - offset_phi)
-        sin_phi = sin(phi)
-        # the mirror that the machine does not have
-        if not (sin_phi >= -1e-12):
+        # Phi where the machine has no pose
+        if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
         return ()
 

@@ -218,17 +218,16 @@ class PolarZ(Mechanism):
         """Position, rotation and the signed margin of every branch."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
-        machine_scale = k.machine_scale
         offset_c = k.offset_c
         offset_r = k.offset_r
         offset_z = k.offset_z
         # numbers of reasonable size
         if not (abs(axis_c) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_z) <= 1e9):
             return Status.BAD_INPUT
-        r = axis_r - offset_r
-        # the mirror that the machine does not have
-        if not (r >= -1e-12*machine_scale):
+        # R where the machine has no pose
+        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
+        r = axis_r - offset_r
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
         x = r*cos_c
@@ -241,15 +240,13 @@ class PolarZ(Mechanism):
         """The rotation of the frame."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
-        machine_scale = k.machine_scale
         offset_c = k.offset_c
         offset_r = k.offset_r
         # numbers of reasonable size
         if not (abs(axis_c) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_z) <= 1e9):
             return Status.BAD_INPUT
-        r = axis_r - offset_r
-        # the mirror that the machine does not have
-        if not (r >= -1e-12*machine_scale):
+        # R where the machine has no pose
+        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
@@ -316,10 +313,10 @@ class PolarZ(Mechanism):
         # numbers of reasonable size
         if not (abs(axis_c) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_z) <= 1e9):
             return Status.BAD_INPUT
-        r = axis_r - offset_r
-        # the mirror that the machine does not have
-        if not (r >= -1e-12*machine_scale):
+        # R where the machine has no pose
+        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
+        r = axis_r - offset_r
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
         x = r*cos_c
@@ -333,16 +330,15 @@ class PolarZ(Mechanism):
         """The Jacobian by rows, per radian."""
         axis_c, axis_r, axis_z = axes
         k = self._constants
-        machine_scale = k.machine_scale
         offset_c = k.offset_c
         offset_r = k.offset_r
         # numbers of reasonable size
         if not (abs(axis_c) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_z) <= 1e9):
             return Status.BAD_INPUT
-        r = axis_r - offset_r
-        # the mirror that the machine does not have
-        if not (r >= -1e-12*machine_scale):
+        # R where the machine has no pose
+        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
             return Status.IMPOSSIBLE
+        r = axis_r - offset_r
         c = DEGREE*(axis_c - offset_c)
         sin_c = sin(c)
         cos_c = cos(c)

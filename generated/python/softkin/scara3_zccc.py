@@ -419,7 +419,11 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         arm_across_a2 = link_length_2*sin_a3
         along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
         across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-        length_a2 = root(across_a2*across_a2 + along_a2*along_a2) if reach > 1e-11*machine_scale else 1.0
+        length_a2 = (
+            root(across_a2*across_a2 + along_a2*along_a2)
+            if (reach > 1e-11*machine_scale) and (across_a2*across_a2 + along_a2*along_a2 > 0.0)
+            else 1.0
+        )
         cos_a2 = along_a2/length_a2 if reach > 1e-11*machine_scale else cos(free_a2)  # its reference where it is free
         sin_a2 = across_a2/length_a2 if reach > 1e-11*machine_scale else sin(free_a2)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
@@ -609,7 +613,11 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         arm_across_a2 = tool_y*cos_a3 + tool_x*sin_a3
         along_a2 = arm_across_a2*y + arm_along_a2*x  # a2: linear pair in the x and y equations
         across_a2 = arm_along_a2*y - arm_across_a2*x
-        length_a2 = root(across_a2*across_a2 + along_a2*along_a2) if reach > 1e-11*machine_scale else 1.0
+        length_a2 = (
+            root(across_a2*across_a2 + along_a2*along_a2)
+            if (reach > 1e-11*machine_scale) and (across_a2*across_a2 + along_a2*along_a2 > 0.0)
+            else 1.0
+        )
         cos_a2 = along_a2/length_a2 if reach > 1e-11*machine_scale else cos(free_a2)  # its reference where it is free
         sin_a2 = across_a2/length_a2 if reach > 1e-11*machine_scale else sin(free_a2)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open

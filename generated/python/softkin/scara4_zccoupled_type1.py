@@ -421,7 +421,11 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         arm_across_a1 = link_length_2*sin_a2
         along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
         across_a1 = arm_along_a1*y - arm_across_a1*x
-        length_a1 = root(across_a1*across_a1 + along_a1*along_a1) if reach > 1e-11*machine_scale else 1.0
+        length_a1 = (
+            root(across_a1*across_a1 + along_a1*along_a1)
+            if (reach > 1e-11*machine_scale) and (across_a1*across_a1 + along_a1*along_a1 > 0.0)
+            else 1.0
+        )
         cos_a1 = along_a1/length_a1 if reach > 1e-11*machine_scale else cos(free_a1)  # its reference where it is free
         sin_a1 = across_a1/length_a1 if reach > 1e-11*machine_scale else sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
@@ -600,7 +604,11 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
         along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
         across_a1 = arm_along_a1*y - arm_across_a1*x
-        length_a1 = root(across_a1*across_a1 + along_a1*along_a1) if reach > 1e-11*machine_scale else 1.0
+        length_a1 = (
+            root(across_a1*across_a1 + along_a1*along_a1)
+            if (reach > 1e-11*machine_scale) and (across_a1*across_a1 + along_a1*along_a1 > 0.0)
+            else 1.0
+        )
         cos_a1 = along_a1/length_a1 if reach > 1e-11*machine_scale else cos(free_a1)  # its reference where it is free
         sin_a1 = across_a1/length_a1 if reach > 1e-11*machine_scale else sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open

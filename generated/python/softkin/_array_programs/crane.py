@@ -40,7 +40,6 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_r, axis_theta, axis_phi = axes
         k = self.constants
-        machine_scale = k.machine_scale
         offset_phi = k.offset_phi
         offset_r = k.offset_r
         offset_theta = k.offset_theta
@@ -51,15 +50,19 @@ class ArrayPrograms(Programs):
             (absolute(axis_phi) <= 1e9) & (absolute(axis_r) <= 1e9) & (absolute(axis_theta) <= 1e9),
             Status.BAD_INPUT,
         )
+        # R where the machine has no pose
+        require(status, (axis_r - offset_r >= -1e-9) & (axis_r - offset_r <= 1000000001.0), Status.IMPOSSIBLE)
+        # Phi where the machine has no pose
+        require(
+            status,
+            (axis_phi - offset_phi >= -1e-9) & (axis_phi - offset_phi <= 180.000000181),
+            Status.IMPOSSIBLE,
+        )
         r = axis_r - offset_r
-        # the mirror that the machine does not have
-        require(status, r >= -1e-12*machine_scale, Status.IMPOSSIBLE)
-        phi = DEGREE*(axis_phi - offset_phi)
-        sin_phi = sin(phi)
-        # the mirror that the machine does not have
-        require(status, sin_phi >= -1e-12, Status.IMPOSSIBLE)
         theta = DEGREE*(axis_theta - offset_theta)
         cos_theta = cos(theta)
+        phi = DEGREE*(axis_phi - offset_phi)
+        sin_phi = sin(phi)
         x = r*cos_theta*sin_phi  # x: affine in the x equation
         sin_theta = sin(theta)
         y = r*sin_phi*sin_theta  # y: affine in the y equation

@@ -39,15 +39,14 @@ class ArrayPrograms(Programs):
         """Position, rotation and the signed margin of every branch."""
         axis_c, axis_r = axes
         k = self.constants
-        machine_scale = k.machine_scale
         offset_c = k.offset_c
         offset_r = k.offset_r
         status = passed(axes)
         # numbers of reasonable size
         require(status, (absolute(axis_c) <= 1e9) & (absolute(axis_r) <= 1e9), Status.BAD_INPUT)
+        # R where the machine has no pose
+        require(status, (axis_r - offset_r >= -1e-9) & (axis_r - offset_r <= 1000000001.0), Status.IMPOSSIBLE)
         r = axis_r - offset_r
-        # the mirror that the machine does not have
-        require(status, r >= -1e-12*machine_scale, Status.IMPOSSIBLE)
         c = DEGREE*(axis_c - offset_c)
         cos_c = cos(c)
         x = r*cos_c

@@ -102,7 +102,11 @@ class ArrayPrograms(Programs):
         arm_across_a1 = link_length_2*sin_a2
         along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
         across_a1 = arm_along_a1*y - arm_across_a1*x
-        length_a1 = select(reach > 1e-11*machine_scale, root(across_a1*across_a1 + along_a1*along_a1), 1.0)
+        length_a1 = select(
+            (reach > 1e-11*machine_scale) & (across_a1*across_a1 + along_a1*along_a1 > 0.0),
+            root(across_a1*across_a1 + along_a1*along_a1),
+            1.0,
+        )
         # its reference where it is free
         cos_a1 = select(reach > 1e-11*machine_scale, along_a1/length_a1, cos(free_a1))
         sin_a1 = select(reach > 1e-11*machine_scale, across_a1/length_a1, sin(free_a1))

@@ -159,7 +159,11 @@ class ArrayPrograms(Programs):
         arm_across_a2 = link_length_2*sin_a3
         along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
         across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-        length_a2 = select(reach > 1e-11*machine_scale, root(across_a2*across_a2 + along_a2*along_a2), 1.0)
+        length_a2 = select(
+            (reach > 1e-11*machine_scale) & (across_a2*across_a2 + along_a2*along_a2 > 0.0),
+            root(across_a2*across_a2 + along_a2*along_a2),
+            1.0,
+        )
         # its reference where it is free
         cos_a2 = select(reach > 1e-11*machine_scale, along_a2/length_a2, cos(free_a2))
         sin_a2 = select(reach > 1e-11*machine_scale, across_a2/length_a2, sin(free_a2))

@@ -1,0 +1,1 @@
+"""The derivation, tested piece by piece and on mechanisms that it was not written for."""

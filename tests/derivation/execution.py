@@ -1,0 +1,112 @@
+"""Small problems put to one rule, and the statements of its answer carried out on numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+import sympy as sp
+from hypothesis import settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from derive.algebra import cosine, polynomial, sine
+from derive.passes import assemble
+from derive.problem import Binding, Equation, Problem
+from derive.program import Let, Output, Statement, Status, real
+from derive.run import evaluate, run
+from derive.solve import Rule
+
+Array = NDArray[np.float64]
+
+SCALE = sp.Symbol("scale", positive=True)
+ORDINALS = ("first", "second", "third", "fourth")
+
+few = settings(max_examples=25)
+"""For a property that is put to many problems."""
+
+ANGLES = st.floats(-4.0, 4.0)
+"""Angles in radians, more than one turn."""
+LENGTHS = st.floats(0.01, 1e3)
+NUMBERS = st.floats(-1e3, 1e3).map(lambda x: x if abs(x) > 1e-100 else 0.0)
+"""Numbers of either sign whose squares do not vanish."""
+ANYTHING = st.one_of(st.floats(-1e9, 1e9), st.sampled_from([0.0, 1e-300, -1e-12, 1e-6, -1.0, 1e9, -1e9]))
+"""Any input that a program has to bear."""
+
+
+def problem(
+    *expressions: sp.Expr,
+    angles: Sequence[sp.Symbol] = (),
+    lengths: Sequence[sp.Symbol] = (),
+    known: Sequence[sp.Symbol] = (),
+    signs: Sequence[sp.Symbol] = (),
+    positive: Iterable[sp.Expr] = (),
+) -> Problem:
+    """A problem from equations in sines and cosines of `angles` (unknown) and `known` (angles as well)."""
+    units = (*angles, *known)
+    equations = (Equation(n, polynomial(e, units, signs)) for n, e in zip(ORDINALS, expressions, strict=False))
+    return Problem(
+        angles=tuple(angles),
+        lengths=tuple(lengths),
+        equations=tuple(equations),
+        units=units,
+        free={a: reference(a) for a in units},
+        scale=SCALE,
+        signs=tuple(signs),
+        positive=tuple(polynomial(e, units, signs) for e in positive),
+    )
+
+
+def reference(angle: sp.Symbol) -> sp.Symbol:
+    """The value that an angle takes where nothing determines it."""
+    return real(f"free_{angle.name}")
+
+
+def answers(rule: Rule, given: Problem) -> list[Binding]:
+    """All that a rule makes of the problem's equations."""
+    return list(rule(given, given.equations))
+
+
+def answer(rule: Rule, given: Problem) -> Binding:
+    """The one thing that a rule makes of the problem's equations."""
+    (binding,) = answers(rule, given)
+    return binding
+
+
+def execute(
+    statements: Iterable[Statement], values: Mapping[sp.Symbol, float | Array]
+) -> tuple[dict[str, Array], Status]:
+    """Every value that the statements bind, beside the given ones; and the status."""
+    statements = tuple(statements)
+    names = dict.fromkeys(s.name.name for s in statements if isinstance(s, Let))
+    program = assemble("rule", statements, [Output(n, real(n)) for n in names])
+    given = {s.name: np.asarray(v, dtype=float) for s, v in values.items()}
+    outputs, status = run(program, given)
+    return {**given, **outputs}, status.item()
+
+
+def at(expression: sp.Expr, values: Mapping[str, Array]) -> float:
+    """The value of an expression at numbers, symbols read by their names."""
+    return float(evaluate(sp.sympify(expression).subs(sp.pi, 180 * sp.Symbol("DEGREE", positive=True)), values))
+
+
+def trigonometry(**angles: float) -> dict[sp.Symbol, float]:
+    """The sines and cosines of known angles, as the solver names them."""
+    found: dict[sp.Symbol, float] = {}
+    for name, value in angles.items():
+        found |= {cosine(real(name)): float(np.cos(value)), sine(real(name)): float(np.sin(value))}
+    return found
+
+
+def distance(first: float, second: float) -> float:
+    """How far two angles are apart, turns not counted."""
+    return float(abs(np.angle(np.exp(1j * (first - second)))))
+
+
+def angle_of(values: Mapping[str, Array], angle: sp.Symbol) -> float:
+    """The angle whose sine and cosine were found."""
+    return float(np.arctan2(values[sine(angle).name], values[cosine(angle).name]))
+
+
+def all_finite(values: Mapping[str, Array]) -> bool:
+    return all(bool(np.all(np.isfinite(v))) for v in values.values())

@@ -1,0 +1,100 @@
+"""A built mechanism, driven numerically: every program through `derive.run`, on many poses at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.build import build
+from derive.kinematics import Kinematics
+from derive.mechanism import Mechanism
+from derive.program import Program, Status
+from derive.run import run
+
+Array = NDArray[np.float64]
+Values = dict[str, Array]
+ENTRIES = tuple(f"r{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3))
+
+
+@dataclass(frozen=True)
+class Machine:
+    """The programs of one mechanism and the constants that its setup computed."""
+
+    kinematics: Kinematics
+    constants: Values
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        return tuple(j.axis.name for j in self.kinematics.mechanism.joints)
+
+    @property
+    def slots(self) -> tuple[dict[str, float], ...]:
+        """Every assignment of the branch signs, slot 0 (all bytes 1) first."""
+        names = [f"sigma_{b.name}" for b in self.kinematics.branches]
+        found = [dict(zip(names, reversed(signs), strict=True)) for signs in product((1.0, -1.0), repeat=len(names))]
+        return tuple(found)
+
+    def run(self, program: Program | None, values: Mapping[str, Array | float]) -> tuple[Values, NDArray[np.object_]]:
+        """Outputs and statuses of a program; what the call does not give is one of the machine's constants."""
+        assert program is not None
+        return run(program, {**self.constants, **values})
+
+    def forward(self, axes: Mapping[str, Array]) -> Values:
+        """The pose and the branch margins; every pose must be possible."""
+        outputs, status = self.run(self.kinematics.forward, axes)
+        assert set(status.flat) == {Status.OK}
+        return outputs
+
+    def inverse(
+        self,
+        pose: Mapping[str, Array],
+        slot: Mapping[str, float | Array],
+        reference: Mapping[str, Array],
+        turns: Mapping[str, float] | None = None,
+    ) -> tuple[Values, NDArray[np.object_]]:
+        """One branch, periods nearest to the reference unless `turns` (joint name → number) says otherwise."""
+        return self.run(self.kinematics.branch, {**pose, **slot, **self._periods(reference, turns)})
+
+    def offset_inverse(
+        self, point: Mapping[str, Array], slot: Mapping[str, float | Array], reference: Mapping[str, Array]
+    ) -> tuple[Values, NDArray[np.object_]]:
+        """One branch of the offset interface: x, y, z of the point, point_* in the flange's coordinates."""
+        return self.run(self.kinematics.offset_branch, {**point, **slot, **self._periods(reference, None)})
+
+    def signs(self, margins: Mapping[str, Array]) -> dict[str, Array]:
+        """The branch signs that margins (outputs of `forward` or `offset_configuration`) name."""
+        return {f"sigma_{b.name}": np.sign(margins[f"branch_{b.name}"]) for b in self.kinematics.branches}
+
+    def jacobian(self, axes: Mapping[str, Array]) -> Array:
+        """Matrices of shape (poses, rows, axes)."""
+        outputs, _ = self.run(self.kinematics.jacobian, axes)
+        rows, columns = len(self.kinematics.rows), len(self.axes)
+        entries = [outputs[f"j{r + 1}{c + 1}"] for r in range(rows) for c in range(columns)]
+        return np.stack(entries, axis=-1).reshape(-1, rows, columns)
+
+    def _periods(self, reference: Mapping[str, Array], turns: Mapping[str, float] | None) -> dict[str, Array | float]:
+        given = turns or {}
+        values: dict[str, Array | float] = {j.turn.name: given.get(j.name, 0.0) for j in self.kinematics.mechanism.joints}
+        values.update({j.reference.name: reference[j.axis.name] for j in self.kinematics.mechanism.joints})
+        return values
+
+
+@cache
+def derived(mechanism: Mechanism) -> Kinematics:
+    """Derived once, however many tests ask."""
+    return build(mechanism)
+
+
+def machine(mechanism: Mechanism, **settings: float) -> Machine:
+    """Build a mechanism and set it up with its nominal parameters, or with other settings; setup must accept them."""
+    kinematics = derived(mechanism)
+    parameters = {p.name: settings.pop(p.name, p.nominal) for p in kinematics.parameters}
+    assert not settings, f"no such parameters: {sorted(settings)}"
+    outputs, status = run(kinematics.setup, {k: np.asarray(v) for k, v in parameters.items()})
+    assert status.item() is Status.OK
+    return Machine(kinematics, {k: np.asarray(v) for k, v in outputs.items()})

@@ -1,0 +1,142 @@
+"""Passes: each with the program before and after."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from derive.passes import assemble, hoist
+from derive.program import DEGREE, Let, Output, Program, Require, Root, Select, Status, real
+from derive.run import run
+from derive.verify import BrokenProgram
+
+A, B, C, D, X, Y = (real(n) for n in "abcdxy")
+FAR = Require(sp.Gt(X, Y), Status.UNREACHABLE)
+
+
+def body(program: Program) -> list[object]:
+    """The names that are bound and the conditions, in order."""
+    return [s.name if isinstance(s, Let) else s.condition for s in program.body]
+
+
+def values(program: Program) -> dict[str, sp.Expr]:
+    return {let.name.name: let.value for let in program.lets()}
+
+
+def test_an_alias_is_folded() -> None:
+    program = assemble("p", [Let(A, X), Let(B, A + 1), Require(sp.Gt(A, 0), Status.OK)], [Output("o", A * B)])
+    assert values(program) == {"b": X + 1}
+    assert program.requires()[0].condition == sp.Gt(X, 0)
+    assert program.outputs == (Output("o", X * B),)
+
+
+def test_an_alias_of_an_alias_and_a_number_are_folded() -> None:
+    program = assemble("p", [Let(A, X), Let(B, A), Let(C, sp.Integer(2))], [Output("o", B * C)])
+    assert program.body == ()
+    assert program.outputs[0].value == 2 * X
+
+
+def test_the_same_let_again_is_dropped() -> None:
+    program = assemble("p", [Let(A, X + 1), Let(B, A * 2), Let(A, X + 1)], [Output("o", A + B)])
+    assert [let.name for let in program.lets()] == [A, B]
+
+
+def test_another_value_under_the_same_name_is_refused() -> None:
+    with pytest.raises(BrokenProgram, match=r"a is bound twice, to x \+ 1 and to x \+ 2"):
+        assemble("p", [Let(A, X + 1), Let(A, X + 2)], [Output("o", A)])
+
+
+def test_what_nothing_needs_disappears() -> None:
+    program = assemble("p", [Let(A, X + 1), Let(B, A + Y), Let(C, X * 2)], [Output("o", C)])
+    assert body(program) == [C]
+    assert program.inputs == (X,)
+
+
+def test_a_let_stands_just_before_its_first_use() -> None:
+    statements = [Let(A, X + 1), Let(B, Y + 1), FAR, Let(C, A * 2), Require(sp.Gt(C, 0), Status.OK), Let(D, B * 3)]
+    program = assemble("p", statements, [Output("o", D)])
+    assert body(program) == [FAR.condition, A, C, sp.Gt(C, 0), B, D]
+
+
+def test_conditions_keep_their_order() -> None:
+    conditions = [Require(sp.Gt(s, 0), status) for s, status in ((Y, Status.BAD_INPUT), (X, Status.UNREACHABLE))]
+    assert assemble("p", conditions, []).requires() == tuple(conditions)
+
+
+def test_statements_may_come_in_any_order() -> None:
+    program = assemble("p", [Let(C, B + 1), Let(B, A + 1), Let(A, X + 1)], [Output("o", C)])
+    assert body(program) == [A, B, C]
+
+
+def test_a_circle_is_refused() -> None:
+    with pytest.raises(BrokenProgram, match="is read before it is bound"):
+        assemble("p", [Let(A, B + 1), Let(B, A + 1)], [Output("o", A)])
+
+
+def test_inputs_are_what_is_free_in_the_order_of_their_names() -> None:
+    program = assemble("p", [Let(D, C + X)], [Output("o", D + A * DEGREE)])
+    assert program.inputs == (A, C, X)
+
+
+def test_a_name_is_a_name_whatever_is_known_of_its_sign() -> None:
+    long = sp.Symbol("a", positive=True)
+    program = assemble("p", [Let(B, long + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", A + B)])
+    assert program.inputs == (A,)
+    assert program.lets()[0].value == A + 1
+
+
+def test_a_positive_name_does_not_decide_a_condition() -> None:
+    long = sp.Symbol("a", positive=True)
+    program = assemble("p", [Let(B, Select(sp.Gt(long - X, 0), X, Y))], [Output("o", B)])
+    assert program.inputs == (A, X, Y)
+
+
+def test_pi_is_half_a_turn_and_a_surd_a_root() -> None:
+    program = assemble("p", [Let(A, X * sp.pi / 4), Let(B, X * sp.cos(sp.pi / 12) + sp.sin(sp.pi / 5))], [Output("o", A + B)])
+    assert values(program)["a"] == 45 * DEGREE * X
+    assert values(program)["b"].has(Root)
+    outputs, _ = run(program, {"x": np.asarray(2.0)})
+    assert outputs["o"] == pytest.approx(2 * np.pi / 4 + 2 * np.cos(np.pi / 12) + np.sin(np.pi / 5), abs=1e-15)
+
+
+def test_hoisting_moves_what_depends_on_constants_alone() -> None:
+    first = assemble("first", [Let(A, C * 2), Let(B, A + X)], [Output("o", B * A)])
+    second = assemble("second", [Let(D, C * 2), FAR], [Output("o", D)])
+    (lowered_first, lowered_second), hoisted = hoist([first, second], ["c"])
+    assert hoisted == (Let(A, C * 2),)
+    assert body(lowered_first) == [B]
+    assert body(lowered_second) == [FAR.condition]
+    assert lowered_second.outputs == (Output("o", A),)
+    assert lowered_first.inputs == (A, X)
+    assert lowered_second.inputs == (A, X, Y)
+
+
+def test_hoisting_goes_through_lets_and_conditions() -> None:
+    program = assemble("p", [Let(A, C * 2), Let(B, A + 1), Require(sp.Gt(B, 0), Status.OK)], [Output("o", B + X)])
+    (lowered,), hoisted = hoist([program], ["c"])
+    assert [let.name for let in hoisted] == [A, B]
+    assert body(lowered) == [sp.Gt(B, 0)]
+
+
+def test_a_hoisted_name_makes_way_for_others() -> None:
+    """One name is a constant of the first program and a temporary of the second: both survive."""
+    first = assemble("first", [Let(A, C * 2)], [Output("o", A)])
+    second = assemble("second", [Let(A, X * 2)], [Output("o", A)])
+    third = assemble("third", [Let(A, C * 3)], [Output("o", A)])
+    lowered, hoisted = hoist([first, second, third], ["c"])
+    assert [str(let.name) for let in hoisted] == ["a_2", "a_3"]
+    assert [p.outputs[0].value for p in lowered] == [real("a_2"), A, real("a_3")]
+    assert values(lowered[1]) == {"a": X * 2}
+
+
+def test_hoisting_changes_no_value() -> None:
+    statements = [Let(A, Root(C) + D), Let(B, A * X), Require(sp.Gt(B, A), Status.UNREACHABLE), Let(Y, B / A + C)]
+    program = assemble("p", statements, [Output("o", Y), Output("q", A)])
+    (lowered,), hoisted = hoist([program], ["c", "d"])
+    given = {"c": np.asarray(2.0), "d": np.asarray(0.5), "x": np.linspace(-2, 2, 9)}
+    constants, _ = run(assemble("setup", hoisted, [Output(let.name.name, let.name) for let in hoisted]), given)
+    before, after = run(program, given), run(lowered, {"x": given["x"], "c": given["c"], **constants})
+    assert all(np.array_equal(before[0][k], after[0][k]) for k in before[0])
+    assert np.array_equal(before[1], after[1])
+    assert set(before[1]) == {Status.OK, Status.UNREACHABLE}

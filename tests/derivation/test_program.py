@@ -1,0 +1,43 @@
+"""Programs as data: what they read, and what their primitives decide by themselves."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derive.program import DEGREE, Let, Output, Program, Require, Select, Status, reads, real, symbols_of
+
+A, B, X, Y = (real(n) for n in "abxy")
+SAMPLE = Program(
+    "sample",
+    (X, Y),
+    (Let(A, X * DEGREE), Require(sp.Gt(A, Y), Status.UNREACHABLE), Let(B, A + 1)),
+    (Output("o", B * real("free")),),
+)
+
+
+def test_what_a_statement_reads() -> None:
+    assert reads(SAMPLE.body[0]) == {X}
+    assert reads(SAMPLE.body[1]) == {A, Y}
+
+
+def test_a_degree_is_no_input() -> None:
+    assert symbols_of(DEGREE * X) == {X}
+
+
+def test_what_a_program_reads_is_what_it_does_not_bind() -> None:
+    assert SAMPLE.reads() == {X, Y, real("free")}
+
+
+def test_its_parts_in_order() -> None:
+    assert [let.name for let in SAMPLE.lets()] == [A, B]
+    assert [r.otherwise for r in SAMPLE.requires()] == [Status.UNREACHABLE]
+
+
+def test_a_choice_between_equals_is_none() -> None:
+    assert Select(sp.Gt(X, 0), A, A) == A
+    assert Select(sp.Gt(X, 0), A, B) != A
+
+
+def test_statuses_are_enumerators_of_the_controller() -> None:
+    assert len({s.value for s in Status}) == len(Status) == 6
+    assert all(s.value.startswith("SMC_") for s in Status)

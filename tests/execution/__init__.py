@@ -1,0 +1,1 @@
+"""The emitted Structured Text, executed: every method of every unit against its Python twin."""

@@ -1,0 +1,249 @@
+"""What every method of a block must answer: for each, a comparison with its Python twin or with the description.
+
+A test runs for every method that stands in the emitted text, and looks it up here: one that is missing fails.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from derive.mechanism import Joint, Kind
+from tests.execution.closeness import asked, assert_same
+from tests.execution.controller import NOT_INITIALIZED, OK, UNREACHABLE, Controller
+from tests.execution.samples import HALF_TURN, NO_TURN, Bytes, Sample, commands
+from tests.execution.twins import Twins
+
+Comparison = Callable[[Twins, Sample], None]
+BYTES = 32
+"""The bytes of CONFIGDATA in the stand-in for the library."""
+
+
+def padded(found: Iterable[int]) -> Bytes:
+    """Signed configuration bytes as all bytes of CONFIGDATA: those without a meaning are 0."""
+    given = tuple(byte % 256 for byte in found)
+    return given + (0,) * (BYTES - len(given))
+
+
+def signed(byte: int) -> int:
+    """A byte as a signed number."""
+    return byte - 256 if byte > 127 else byte
+
+
+def initialize(twins: Twins, sample: Sample) -> None:
+    """Fresh, refused without parameters or with the last one, and again accepted."""
+    one = Controller(twins.library, twins.mechanism)
+    assert not one.block.call("IsInitialized")
+    assert one.initialise(twins.robot.parameters) == OK
+    assert one.block.call("IsInitialized")
+    one.set_inputs({"offset_" + twins.mechanism.joints[0].key: float("nan")})
+    assert one.block.call("Initialize") == NOT_INITIALIZED
+    assert not one.block.call("IsInitialized")
+    assert one.initialise(twins.robot.parameters) == OK
+    assert_same(one.forward(sample.axes), twins.controller.forward(sample.axes), twins, sample)
+
+
+def name(twins: Twins, sample: Sample) -> None:
+    expected = twins.mechanism.title or twins.mechanism.block_name
+    assert twins.controller.block.call("GetKinematicsName") == expected
+
+
+def axis_properties(twins: Twins, sample: Sample) -> None:
+    """Types as declared, and the limits that the block keeps; beyond the axes a free linear one."""
+    for index in (*range(6), 255, 2**32 - 1):
+        properties = twins.library.new("TRAFO.Axis_Properties")
+        twins.controller.block.call("GetAxisProperties", props=properties, udiAxis=index)
+        limits = properties.limits
+        found = properties.eType, limits.xUnlimited, limits.dLower, limits.dUpper
+        if index < len(twins.mechanism.joints):
+            assert_same(found, _properties(twins, twins.mechanism.joints[index]), twins, index)
+        else:
+            assert found == ("Linear", True, 0.0, 0.0)
+
+
+def _properties(twins: Twins, joint: Joint) -> tuple[str, bool, float, float]:
+    kind = "Rotary" if joint.kind is Kind.ROTARY else "Linear"
+    parameters = twins.robot.parameters
+    lower, upper = parameters[f"lower_{joint.key}"], parameters[f"upper_{joint.key}"]
+    if (lower, upper) != (0.0, 0.0):
+        return kind, False, lower, upper
+    if joint.domain is not None:
+        low, high = (end + parameters[joint.offset.name] for end in joint.domain)
+        return kind, False, low, high
+    values = {p.symbol: parameters[p.name] for p in twins.mechanism.parameters}
+    if joint.limit_range is not None and joint.pitch.xreplace(values) != 0:
+        return kind, False, *joint.limit_range
+    return kind, True, 0.0, 0.0
+
+
+def forward(twins: Twins, sample: Sample) -> None:
+    status, answer = asked(twins.robot.forward, sample.axes)
+    expected = (*answer[0], padded(answer[1])) if status == OK else None
+    assert_same(twins.controller.forward(sample.axes), (status, expected), twins, sample)
+
+
+def inverse(twins: Twins, sample: Sample) -> None:
+    for command in commands(twins.machine, sample):
+        frame = command.position, command.rotation
+        status, answer = asked(twins.robot.inverse, frame, command.configuration, command.reference)
+        expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
+        found = twins.controller.inverse(*frame, command.configuration, command.reference)
+        assert_same(found, (status, expected), twins, command)
+
+
+def orientation(twins: Twins, sample: Sample) -> None:
+    expected = asked(twins.robot.orientation, sample.axes)
+    assert_same(twins.controller.orientation(sample.axes), expected, twins, sample)
+
+
+def singularity(twins: Twins, sample: Sample) -> None:
+    expected = twins.robot.singularity(sample.axes).is_singular
+    assert twins.controller.is_singular(sample.axes) == expected, f"{twins} {sample}"
+
+
+def jacobian(twins: Twins, sample: Sample) -> None:
+    status, rows = asked(twins.robot.jacobian, sample.axes)
+    expected = None
+    if status == OK:
+        wide = [tuple(row) + (0.0,) * (6 - len(row)) for row in rows]
+        expected = (*wide, *((0.0,) * 6,) * (6 - len(wide)))
+    assert_same(twins.controller.jacobian(sample.axes), (status, expected), twins, sample)
+
+
+def image(twins: Twins, sample: Sample) -> None:
+    for method in ("GetOrientationImage", "GetFlangeOrientationImageTotal"):
+        if method.lower() in twins.controller.block.routines:
+            expected = twins.robot.orientation_image()
+            assert_same(twins.controller.image(method), (OK, tuple(expected)), twins)
+
+
+def image_with_orientation(twins: Twins, sample: Sample) -> None:
+    """The projection, as a space of one orientation; refused where the tool points exactly the opposite way."""
+    refusals = []
+    for rows in (sample.rotation, NO_TURN, HALF_TURN):
+        status, projected = asked(twins.robot.project, rows)
+        expected = None
+        if status == OK:
+            expected = ("zero", projected, tuple(row[2] for row in projected), (0.0, 0.0, 1.0))
+        assert_same(twins.controller.image_with_orientation(rows), (status, expected), twins, rows)
+        refusals += [status] if status != OK else []
+    assert refusals == [UNREACHABLE]
+
+
+def configuration_offset(twins: Twins, sample: Sample) -> None:
+    """All automatic where there is no pose: the method has no status."""
+    for offset in ((0.0, 0.0, 0.0), sample.offset):
+        _, found = asked(twins.robot.configuration_offset, sample.axes, offset)
+        expected = padded(found or ())
+        assert twins.controller.configuration_offset(sample.axes, offset) == expected, f"{twins} {sample}"
+
+
+def inverse_offset(twins: Twins, sample: Sample) -> None:
+    robot, far = twins.robot, sample.reference
+    if asked(robot.forward, sample.axes)[0] != OK:
+        return
+    for offset in ((0.0, 0.0, 0.0), sample.offset):
+        place = point_at(twins, sample, offset)
+        own = robot.configuration_offset(sample.axes, offset)
+        opened = (0,) * len(own)
+        for point, configuration, reference in (
+            (place, own, sample.axes),
+            (place, own, far),
+            (place, opened, sample.axes),
+            (place, opened, far),
+            (place, sample.data, far),
+            (tuple(2.0 * v for v in place), robot.DEFAULT_CONFIGURATION, far),
+        ):
+            status, answer = asked(robot.inverse_offset, point, offset, configuration, reference)
+            expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
+            found = twins.controller.inverse_offset(point, offset, configuration, reference)
+            assert_same(found, (status, expected), twins, point, offset, configuration, reference)
+
+
+def point_at(twins: Twins, sample: Sample, offset: Iterable[float]) -> tuple[float, ...]:
+    """Where a point of the flange is."""
+    (position, rotation), _ = twins.robot.forward(sample.axes)
+    arm = tuple(offset)
+    return tuple(p + sum(r * o for r, o in zip(row, arm, strict=True)) for p, row in zip(position, rotation, strict=True))
+
+
+def configuration_size(twins: Twins, sample: Sample) -> None:
+    assert twins.controller.block.call("GetConfigurationDataSize") == len(twins.robot.CONFIGURATION) == len(sample.data)
+
+
+def default_configuration(twins: Twins, sample: Sample) -> None:
+    found = twins.controller.configuration(sample.data)
+    assert twins.controller.block.call("GetDefaultConfigurationData", cd=found) is True
+    assert tuple(found.abyData) == padded(twins.robot.DEFAULT_CONFIGURATION)
+
+
+def connectible(twins: Twins, sample: Sample) -> None:
+    """By the branch bytes alone."""
+    branches = twins.robot.BRANCHES
+    others = sample.data[:branches] + tuple(255 - byte for byte in sample.data[branches:])
+    changed = tuple(255 - byte for byte in sample.data[:branches]) + sample.data[branches:]
+    for data, expected in ((sample.data, True), (others, True), (changed, branches == 0)):
+        given = {"cd1": twins.controller.configuration(sample.data), "cd2": twins.controller.configuration(data)}
+        assert twins.controller.block.call("CPConnectible", **given) is expected
+
+
+def automatic_periods(twins: Twins, sample: Sample) -> None:
+    """The period bytes are 0, and all others are copied."""
+    source, found = twins.controller.configuration(sample.data), twins.controller.configuration(())
+    expected = list(source.abyData)
+    expected[twins.robot.BRANCHES : len(sample.data)] = [0] * len(twins.robot.PERIOD_AXES)
+    twins.controller.block.call("ActivateAutomaticRotaryPeriods", cdDst=found, cdSrc=source)
+    assert found.abyData == expected
+
+
+def singular_configuration(twins: Twins, sample: Sample) -> None:
+    branches = twins.robot.BRANCHES
+    for byte in range(5):
+        data = (byte,) * branches + (3,) * (len(sample.data) - branches)
+        given = twins.controller.configuration(data)
+        assert twins.controller.block.call("IsConfigSingular", cd=given) is (byte == 3 and branches > 0)
+
+
+def periods(twins: Twins, sample: Sample) -> None:
+    """By axis, signed; 0 for an axis without a period."""
+    found = [99] * 6
+    twins.controller.block.call("GetPeriods", cd=twins.controller.configuration(sample.data), aPeriods=found)
+    expected = [0] * 6
+    for axis, byte in zip(twins.robot.PERIOD_AXES, sample.data[twins.robot.BRANCHES :], strict=True):
+        expected[axis] = signed(byte)
+    assert found == expected
+
+
+COMPARISONS: dict[str, Comparison] = {
+    "Initialize": initialize,
+    "IsInitialized": initialize,
+    "GetKinematicsName": name,
+    "GetAxisProperties": axis_properties,
+    "AxesToCartesian": forward,
+    "CartesianToAxes": inverse,
+    "AxesToOrientation": orientation,
+    "IsSingularity": singularity,
+    "Jacobian": jacobian,
+    "GetOrientationImage": image,
+    "GetFlangeOrientationImageTotal": image,
+    "GetFlangeOrientationImageWithOri": image_with_orientation,
+    "AxesToConfiguration_Offset": configuration_offset,
+    "CartesianToAxes_Offset": inverse_offset,
+    "GetConfigurationDataSize": configuration_size,
+    "GetDefaultConfigurationData": default_configuration,
+    "CPConnectible": connectible,
+    "ActivateAutomaticRotaryPeriods": automatic_periods,
+    "IsConfigSingular": singular_configuration,
+    "GetPeriods": periods,
+}
+"""By the name of the method."""
+
+POSELESS = {
+    "Initialize",
+    "IsInitialized",
+    "GetKinematicsName",
+    "GetAxisProperties",
+    "GetOrientationImage",
+    "GetFlangeOrientationImageTotal",
+    "GetConfigurationDataSize",
+}
+"""Methods that no pose goes into: a few samples of a machine are enough."""

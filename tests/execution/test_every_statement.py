@@ -1,0 +1,111 @@
+"""Every statement of every emitted unit is executed by the tests of this folder: none is dead, none untried."""
+
+from __future__ import annotations
+
+from itertools import product
+
+from derive.emit.st_names import capitalized
+from derive.mechanism import Mechanism
+from tests.execution import (
+    test_blocks_alone,
+    test_configuration_blocks,
+    test_garbage,
+    test_initialise,
+    test_limits,
+    test_matrix_functions,
+    test_not_initialised,
+    test_shared_functions,
+    test_singular_poses,
+)
+from tests.execution.comparisons import COMPARISONS
+from tests.execution.samples import Sample
+from tests.execution.statements import Statements
+from tests.execution.twins import Twins, twins_of
+from tests.execution.units import compiled, compiled_shared, file_of, shared_texts, text_of
+from tests.st.library import Library
+
+MACHINES = ("plain", "nominal", "equal", "limited", "limited to a turn")
+FEW, FEW_OF_THE_GRID = 3, 40
+"""The numbers of samples: a watched call takes its time."""
+
+
+def test_every_statement_runs(mechanism: Mechanism) -> None:
+    twins = twins_of(mechanism)
+    statements = Statements([file_of(mechanism)], libraries(mechanism))
+    with statements.watched():
+        run_the_tests(mechanism, twins)
+        for one in (one for one in twins if one.machine.label in MACHINES):
+            for sample in (*few(one.regular, FEW), *(few(one.grid, FEW_OF_THE_GRID) if one.machine.label == "equal" else ())):
+                compare_all(one, sample)
+    lines = text_of(mechanism).split("\n")
+    missing = {place.line for place in statements.left_out()}
+    missing = {line for line in missing - unreachable(mechanism, lines) if not lines[line - 1].startswith("FUNCTION_BLOCK")}
+    assert not missing, [f"{line}: {lines[line - 1].strip()}" for line in sorted(missing)]
+
+
+def test_every_statement_of_the_shared_objects_runs() -> None:
+    kinds = product(test_matrix_functions.ORDERS, (72, 36))
+    libraries = [compiled_shared(), *(test_matrix_functions.library(*kind) for kind in kinds)]
+    libraries += [test_matrix_functions.misbehaving(name) for name in test_matrix_functions.BROKEN]
+    statements = Statements(shared_texts(), libraries)
+    with statements.watched():
+        for test in vars(test_shared_functions).values():
+            if getattr(test, "__name__", "").startswith("test_") and not hasattr(test, "pytestmark"):
+                test()
+        for order in test_matrix_functions.ORDERS:
+            test_matrix_functions.test_the_order_is_found(order)
+            test_matrix_functions.test_read_and_write(order)
+        for name in test_matrix_functions.BROKEN:
+            test_matrix_functions.test_no_order_where_the_library_behaves_otherwise(name)
+        test_matrix_functions.test_no_order_where_the_size_differs(36)
+        test_matrix_functions.test_nothing_is_touched_where_the_matrix_is_not_known(36, "Rows")
+    assert [str(place) for place in statements.left_out()] == []
+
+
+def few(samples: tuple[Sample, ...], count: int) -> tuple[Sample, ...]:
+    """About that many of some samples, from all over them."""
+    return samples[:: max(1, len(samples) // count)]
+
+
+def libraries(mechanism: Mechanism) -> list[Library]:
+    """The unit, as the tests compile it."""
+    found = [compiled(mechanism), compiled(mechanism, matrix_size=36)]
+    if len(twins_of(mechanism)[0].robot.CONFIGURATION) > 1:
+        found.append(test_initialise.without_index_checks(mechanism))
+    return found
+
+
+def compare_all(one: Twins, sample: Sample) -> None:
+    for method, compare in COMPARISONS.items():
+        if method.lower() in one.controller.block.routines:
+            compare(one, sample)
+
+
+def run_the_tests(mechanism: Mechanism, twins: tuple[Twins, ...]) -> None:
+    """What the comparisons leave out: refusals, and the other blocks."""
+    test_blocks_alone.test_the_number_of_axes(twins)
+    test_blocks_alone.test_calling_the_block_itself_does_nothing(twins)
+    test_not_initialised.test_no_method_works(twins, test_not_initialised.fresh)
+    test_initialise.test_every_parameter_is_checked(twins[-1:])
+    test_initialise.test_limits_are_in_order(mechanism, 10.0, 10.0)
+    test_initialise.test_a_matrix_of_another_size_is_refused(mechanism, 36)
+    test_initialise.test_a_configuration_that_is_too_small_is_refused(mechanism)
+    test_limits.test_every_limit_refuses_alone(twins)
+    test_garbage.test_garbage_in_one_number(twins)
+    test_garbage.test_a_pose_that_cannot_be_assembled(twins)
+    test_garbage.test_what_is_no_rotation(twins)
+    test_singular_poses.test_a_point_on_the_axis_of_a_link_cannot_be_aimed(twins)
+    if mechanism.constraints:
+        test_initialise.test_the_coupling_is_given_once()
+    if mechanism in test_configuration_blocks.CONFIGURABLE:
+        test_configuration_blocks.test_what_is_set_is_read(twins[1])
+
+
+def unreachable(mechanism: Mechanism, lines: list[str]) -> set[int]:
+    """The lines that no input reaches: an axis whose closure allows an interval only is never without limits, and a
+    CONFIGDATA of no bytes does not exist."""
+    keys = [capitalized(joint.key) for joint in mechanism.joints if joint.domain is not None]
+    dead = {f"{word}{key} := {value};" for key in keys for word, value in (("lowest", "-1.0E12"), ("highest", "1.0E12"))}
+    found = {number for number, line in enumerate(lines, 1) if line.strip() in dead}
+    empty = [number for number, line in enumerate(lines, 1) if line == "IF SIZEOF(configuration) < 1 THEN"]
+    return found.union(*({number + 1, number + 2} for number in empty))

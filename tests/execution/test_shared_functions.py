@@ -1,0 +1,146 @@
+"""The functions that all units share, each alone, against the reference semantics of the programs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from derive.program import Atan2, NearestOnArc, NearestPeriod, Root, real
+from derive.run import evaluate
+from tests.execution.units import compiled_shared
+from tests.st.library import StFault
+
+LIBRARY = compiled_shared()
+HUGE = 1e300
+SIZES = st.floats(-HUGE, HUGE) | st.floats(-1e9, 1e9) | st.sampled_from([0.0, -0.0, 5e-324, -5e-324, 1.0, -1.0])
+DEGREES = st.floats(-1e9, 1e9) | st.integers(-2000, 2000).map(lambda n: 90.0 * n)
+ANGLES = st.floats(-1e4, 1e4) | st.integers(-40, 40).map(lambda n: n * math.pi / 2)
+NO_NUMBERS = (math.nan, math.inf, -math.inf, 1e300, -1e300, 1.0000001e9, -1.0000001e9)
+ROUNDING = 4.5e-16
+"""Two units in the last place."""
+
+
+def reference(function: type[sp.Function], *arguments: float) -> float:
+    """The value of a primitive, as the programs define it."""
+    symbols = [real(f"argument_{i}") for i, _ in enumerate(arguments)]
+    return float(evaluate(function(*symbols), {s.name: np.asarray(v) for s, v in zip(symbols, arguments, strict=True)}))
+
+
+@given(y=SIZES, x=SIZES)
+@example(-0.0, -1.0)
+@example(0.0, -0.0)
+@example(-5e-324, -1.0)
+@example(HUGE, 5e-324)
+def test_atan2(y: float, x: float) -> None:
+    found = LIBRARY.function("Softkin_Atan2")(y, x)
+    assert found == pytest.approx(reference(Atan2, y, x), rel=ROUNDING, abs=5e-324)
+    assert -math.pi <= found <= math.pi
+
+
+def test_atan2_in_every_quadrant() -> None:
+    quarter = math.pi / 4
+    for y, x, eighths in ((0, 1, 0), (1, 1, 1), (1, 0, 2), (1, -1, 3), (0, -1, 4), (-1, -1, -3), (-1, 0, -2), (-1, 1, -1)):
+        assert LIBRARY.function("Softkin_Atan2")(float(y), float(x)) == pytest.approx(eighths * quarter, rel=ROUNDING)
+    assert LIBRARY.function("Softkin_Atan2")(0.0, 0.0) == 0.0
+
+
+@given(value=SIZES)
+def test_root(value: float) -> None:
+    assert LIBRARY.function("Softkin_Root")(value) == reference(Root, value)
+
+
+@given(value=DEGREES, centre=DEGREES)
+@example(180.0, 0.0)
+@example(-180.0, 0.0)
+@example(180.0 - 1e-9, 0.0)
+@example(180.0 - 1.1e-9, 0.0)
+@example(540.0, 360.0)
+def test_nearest_period(value: float, centre: float) -> None:
+    assert LIBRARY.function("Softkin_NearestPeriod")(value, centre) == reference(NearestPeriod, value, centre)
+
+
+@given(angle=ANGLES, centre=ANGLES, half=st.floats(0.0, math.pi))
+def test_nearest_on_arc(angle: float, centre: float, half: float) -> None:
+    expected = reference(NearestOnArc, angle, centre, half)
+    assert LIBRARY.function("Softkin_NearestOnArc")(angle, centre, half) == pytest.approx(expected, rel=1e-14, abs=1e-14)
+
+
+@given(value=st.floats(-2e9, 2e9) | st.integers(-(2**31), 2**31).map(float))
+@example(-0.5)
+@example(-1e-300)
+@example(2e9)
+@example(-2e9)
+def test_floor(value: float) -> None:
+    if abs(value) <= 2e9:
+        assert LIBRARY.function("Softkin_Floor")(value) == math.floor(value)
+
+
+@given(value=st.floats(2.1e9, HUGE) | st.floats(-HUGE, -2.1e9))
+@example(math.nextafter(2e9, math.inf))
+def test_floor_leaves_what_no_integer_holds(value: float) -> None:
+    assert LIBRARY.function("Softkin_Floor")(value) == value
+
+
+@pytest.mark.parametrize("value", NO_NUMBERS)
+def test_what_is_no_number(value: float) -> None:
+    assert LIBRARY.function("Softkin_IsNumber")(value) is False
+
+
+@given(value=st.floats(-1e9, 1e9))
+@example(1e9)
+@example(-1e9)
+def test_what_is_a_number(value: float) -> None:
+    assert LIBRARY.function("Softkin_IsNumber")(value) is True
+
+
+@given(axis=st.floats(-1e9, 1e9) | st.integers(-300, 300).map(lambda n: 180.0 * n))
+@example(180.0 - 1e-9)
+@example(-180.0 - 1e-9)
+@example(math.nextafter(180.0, 0.0))
+@example(360.0 * 127 - 180.0 - 1e-3)
+@example(360.0 * 127 - 180.0)
+@example(-180.0 - 360.0 * 127)
+@example(-180.0 - 360.0 * 127 - 1e-3)
+def test_period_number(axis: float) -> None:
+    turn = math.floor((axis + (180.0 + 1e-9)) / 360.0)
+    number = turn + 1 if turn >= 0 else turn
+    assert LIBRARY.function("Softkin_PeriodNumber")(axis) == (number if abs(number) <= 127 else 0)
+
+
+def test_period_numbers_and_bytes() -> None:
+    """Each of the 255 numbers that a byte holds, and no other."""
+    to_byte, of_byte = LIBRARY.function("Softkin_ByteOfPeriod"), LIBRARY.function("Softkin_PeriodOfByte")
+    for number in range(-127, 128):
+        assert to_byte(number) == number % 256
+        assert of_byte(to_byte(number)) == number
+    for number in (-32768, -129, -128, 128, 129, 255, 256, 32767):
+        assert to_byte(number) == 0
+    assert [of_byte(byte) for byte in range(256)] == [*range(128), *range(-128, 0)]
+
+
+@given(margin=st.floats(-1e300, 1e300))
+@example(1e-11)
+@example(-1e-11)
+@example(1.0000001e-11)
+@example(-1.0000001e-11)
+@example(0.0)
+def test_branch_byte(margin: float) -> None:
+    expected = 3 if abs(margin) <= 1e-11 else (1 if margin > 0 else 2)
+    assert LIBRARY.function("Softkin_BranchByte")(margin) == expected
+
+
+def test_which_bytes_admit_a_branch() -> None:
+    admits = LIBRARY.function("Softkin_AdmitsBranch")
+    for byte in range(256):
+        assert [admits(byte, branch) for branch in (1, 2)] == [byte in (0, 3, 1), byte in (0, 3, 2)]
+
+
+def test_the_harness_would_notice_a_bad_operation() -> None:
+    """Without its guard, a function faults: the tests above can fail."""
+    with pytest.raises(StFault):
+        LIBRARY.function("Softkin_Atan2")(math.nan, 1.0)

@@ -1,0 +1,115 @@
+"""Forward kinematics written by hand, as the literature prints it: independent of the descriptions.
+
+Each function takes parameters and motor values (axis value less offset, in radians and lengths), and gives
+x, y, z and the turn of the flange about z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from tests.mechanisms.closure import Array
+
+Pose = tuple[Array, Array, Array, Array]
+Formula = Callable[[Mapping[str, float], Sequence[Array]], Pose]
+TURN = 2 * np.pi
+
+
+def _arms(lengths: Sequence[float], angles: Sequence[Array]) -> tuple[Array, Array]:
+    """Links one after the other at absolute angles."""
+    x = sum(length * np.cos(angle) for length, angle in zip(lengths, angles, strict=True))
+    y = sum(length * np.sin(angle) for length, angle in zip(lengths, angles, strict=True))
+    return x, y
+
+
+def _scara4(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    x, y = _arms((p["link_length_1"], p["link_length_2"]), (q[0], q[0] + q[1]))
+    climb = -p["pitch_zc"] / TURN + p.get("gear_coupling", 0.0) * 180.0 / np.pi
+    return x, y, q[2] + climb * q[3], q[0] + q[1] + q[3]
+
+
+def _scara3(word: str) -> Formula:
+    def formula(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+        x, y = _arms((p[f"{word}_length_1"], p[f"{word}_length_2"]), (q[0], q[0] + q[1]))
+        return x, y, q[2], q[0] + q[1]
+
+    return formula
+
+
+def _scara3_z(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    angles = (q[0], q[0] + q[1], q[0] + q[1] + q[2])
+    x, y = _arms([p[f"arm_length_{k}"] for k in (1, 2, 3)], angles)
+    return x, y, q[3], angles[2]
+
+
+def _zccc(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    angles = (q[1], q[1] + q[2], q[1] + q[2] + q[3])
+    x, y = _arms([p[f"link_length_{k}"] for k in (1, 2, 3)], angles)
+    return x, y, q[0], angles[2]
+
+
+def _sccc(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    first = q[0]
+    second = first + q[1] + p["coupling_12"] * q[0]
+    third = second + q[2] + p["coupling_13"] * q[0] + p["coupling_23"] * q[1]
+    x, y = _arms([p[f"link_length_{k}"] for k in (1, 2, 3)], (first, second, third))
+    return x, y, 0 * x, third
+
+
+def _pcc(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    x, y = _arms((p["link_length_1"], p["link_length_2"]), q)
+    return x, y, 0 * x, 0 * x
+
+
+def _crane(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    r, theta, phi = q
+    return r * np.sin(phi) * np.cos(theta), r * np.sin(phi) * np.sin(theta), r * np.cos(phi), 0 * r
+
+
+def _polar(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    return q[1] * np.cos(q[0]), q[1] * np.sin(q[0]), q[2] if len(q) > 2 else 0 * q[0], q[0]
+
+
+def _carriage(x: Sequence[float], y: Sequence[float]) -> Formula:
+    """Two drives move a carriage; a third axis, where there is one, lifts."""
+
+    def formula(_: Mapping[str, float], q: Sequence[Array]) -> Pose:
+        a, b = q[0], q[1]
+        return x[0] * a + x[1] * b, y[0] * a + y[1] * b, q[2] if len(q) > 2 else 0 * a, 0 * a
+
+    return formula
+
+
+def _cutter(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    return q[0], q[1], q[2] if len(q) > 3 else 0 * q[0], p["direction_r"] * q[-1]
+
+
+CARTESIAN = _carriage((1, 0), (0, 1))
+H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
+H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
+T_GANTRY = _carriage((0.5, 0.5), (-0.5, 0.5))
+FORMULAS: dict[str, Formula] = {
+    "Kin_Crane": _crane,
+    "Kin_Gantry2": CARTESIAN,
+    "Kin_Gantry3": CARTESIAN,
+    "Kin_GantryCutter2": _cutter,
+    "Kin_GantryCutter3": _cutter,
+    "Kin_HGantry2": H_GANTRY,
+    "Kin_HGantry3": H_GANTRY,
+    "Kin_P2Y": H_BOT,
+    "Kin_PCC": _pcc,
+    "Kin_Polar": _polar,
+    "Kin_Polar_Z": _polar,
+    "Kin_SCCC": _sccc,
+    "Kin_Scara2_Z": _scara3("arm"),
+    "Kin_Scara3_CCZ": _scara3("link"),
+    "Kin_Scara3_Z": _scara3_z,
+    "Kin_Scara3_ZCCC": _zccc,
+    "Kin_Scara4_CCZC_ZCcoupled": _scara4,
+    "Kin_Scara4_ZCCC": _zccc,
+    "Kin_Scara4_ZCcoupled_Type1": _scara4,
+    "Kin_TGantry2": T_GANTRY,
+    "Kin_TGantry3": T_GANTRY,
+}

@@ -1,0 +1,138 @@
+"""The machines on which every mechanism is tested, and the axis values at which they are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import softkin
+from numpy.random import Generator
+
+from derive.catalogue import catalogue
+from derive.mechanism import Joint, Mechanism, Parameter, Role
+from tests.mechanisms.closure import Array, Closure
+
+MECHANISMS = tuple(mechanism for _, mechanism in catalogue())
+WITHOUT_LENGTHS = 500.0
+"""The reach assumed of a machine that has no lengths."""
+TURNS = 1000.0
+"""How far an axis turns that turns more than once, in degrees."""
+CLIMBING_TURNS = 720.0
+"""The same of an axis that carries another one along: it is limited."""
+REGULAR = 0.05
+"""Branch indicators and positive quantities (lengths: per reach) at a regular pose are at least this."""
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A mechanism with parameters: the generated class, and the closure that it is held against."""
+
+    label: str
+    mechanism: Mechanism
+    given: Mapping[str, float]
+    robot: softkin.Mechanism
+    closure: Closure
+    reach: float
+
+    def draw(self, count: int, rng: Generator) -> Array:
+        """Random axis values of regular poses, over several turns where an axis has them."""
+        chosen: list[Array] = []
+        while sum(map(len, chosen)) < count:
+            axes = self._any(4 * count, rng)
+            chosen.append(axes[self.is_regular(axes)])
+        return np.concatenate(chosen)[:count]
+
+    def is_regular(self, axes: Array) -> Array:
+        """Whether axis values are away from every singularity."""
+        joints = self.closure.joints(axes)
+        lengths = {j.symbol: self.reach for j in self.mechanism.joints if not j.is_angle}
+        scales = np.array([lengths.get(p, 1.0) for p in self.mechanism.positive])
+        away = np.all(np.abs(self.closure.indicators(joints)) > REGULAR, axis=1)
+        return away & np.all(self.closure.positive(joints) > REGULAR * scales, axis=1)
+
+    def error(self, axes: Array, positions: Array, rotations: Array) -> Array:
+        """The largest part of the closure's residual in every row, lengths over the size of the motion."""
+        residual = np.abs(self.closure.residual(self.closure.joints(axes), positions, rotations))
+        residual[:, :-9] /= self.size(axes)[:, None]
+        return residual.max(axis=1)
+
+    def miss(self, axes: Array, positions: Array, rotations: Array) -> Array:
+        """The same of the commanded part of the closure: what the inverse must meet."""
+        equations = np.abs(self.closure.equations(self.closure.joints(axes), positions, rotations))
+        lengths = len(self.mechanism.task.position)
+        equations[:, :lengths] /= self.size(axes)[:, None]
+        return equations.max(axis=1)
+
+    def size(self, axes: Array) -> Array:
+        """The size of the motion in every row: the reach, and how far linear axes are out."""
+        return self.reach + np.abs(axes - self.closure.offsets)[:, ~self.closure.angles].sum(axis=1)
+
+    def changed(self, **parameters: float) -> softkin.Mechanism:
+        """The same robot with other parameters."""
+        return type(self.robot)(**{**self.given, **parameters})
+
+    def _any(self, count: int, rng: Generator) -> Array:
+        columns = []
+        for joint, offset in zip(self.mechanism.joints, self.closure.offsets, strict=True):
+            low, high = self._range(joint)
+            columns.append(rng.uniform(low, high, count) + (0.0 if joint.multi_turn else offset))
+        return np.stack(columns, axis=1)
+
+    def _range(self, joint: Joint) -> tuple[float, float]:
+        if joint.multi_turn:
+            size = CLIMBING_TURNS if joint.pitch != 0 else TURNS
+        else:
+            size = 180.0 if joint.is_angle else self.reach
+        low, high = joint.domain or (-size, size)
+        return max(low, -size), min(high, size)
+
+
+@cache
+def machines_of(mechanism: Mechanism) -> tuple[Machine, ...]:
+    """Plain, nominal, with equal and with very unequal lengths, and random machines with everything."""
+    rng = np.random.default_rng(8)
+    nominal = {p.name: p.nominal for p in mechanism.parameters}
+    lengths = [p.name for p in mechanism.parameters if p.role is Role.LENGTH]
+    found = {
+        "plain": {name: nominal[name] for name in lengths},
+        "nominal": nominal,
+        "equal": nominal | dict.fromkeys(lengths, 250.0),
+        "unequal": nominal | dict(zip(lengths, (320.0, 80.0, 20.0), strict=False)),
+    }
+    found |= {f"random {k}": _random(mechanism, rng) for k in (1, 2, 3)}
+    return tuple(machine(mechanism, label, given) for label, given in found.items())
+
+
+def machine(mechanism: Mechanism, label: str, given: Mapping[str, float]) -> Machine:
+    """One machine; what is not given has its default."""
+    robot = softkin.catalogue()[mechanism.name](**given)
+    lengths = [abs(robot.parameters[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
+    closure = Closure(mechanism, robot.parameters)
+    return Machine(label, mechanism, given, robot, closure, sum(lengths) or WITHOUT_LENGTHS)
+
+
+def _random(mechanism: Mechanism, rng: Generator) -> dict[str, float]:
+    """Random parameters and offsets that meet the constraints."""
+    while True:
+        given = {p.name: _draw(p, rng) for p in mechanism.parameters}
+        symbols = {p.symbol: given[p.name] for p in mechanism.parameters}
+        if all(bool(c.condition.xreplace(symbols)) for c in mechanism.constraints):
+            break
+    for joint in mechanism.joints:
+        low, high = joint.offset_range or (-200.0, 200.0)
+        given[joint.offset.name] = rng.uniform(low, high)
+    return given
+
+
+def _draw(parameter: Parameter, rng: Generator) -> float:
+    sizes = {Role.PITCH: 100.0, Role.GEAR: 0.3, Role.COUPLING: 1.5}
+    if parameter.role in (Role.LENGTH, Role.DISTANCE):
+        return float(parameter.nominal * rng.uniform(0.4, 1.6))
+    if parameter.role is Role.FLAG:
+        return float(rng.integers(2))
+    if parameter.role is Role.SIGN:
+        return float(rng.choice((-1, 1)))
+    size = sizes[parameter.role]
+    return float(rng.uniform(-size, size) if rng.random() < 0.7 else 0.0)

@@ -1,0 +1,130 @@
+"""The edge of the workspace belongs to it: reach, the hole in the middle, the plane, and the wrong side of a tool."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+from softkin import Status
+
+from derive.mechanism import Mechanism, Role, Turning
+from tests.mechanisms.both_ways import inverse
+from tests.mechanisms.closure import Array
+from tests.mechanisms.loci import loci
+from tests.mechanisms.machines import Machine
+from tests.mechanisms.refusals import refusal
+from tests.mechanisms.test_round_trip import slots
+
+BOUNDARY = Fraction(1, 10**12)
+"""A squared sine that is negative by at most this is zero."""
+BESIDE = (0.0, *(s * 10.0**-k for k in (13, 12, 11, 9, 6, 3) for s in (1, -1)))
+PLANE = 1e-6
+
+
+def lengths(machine: Machine) -> list[float]:
+    names = [p.name for p in machine.mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
+    return [machine.robot.parameters[name] for name in names]
+
+
+def turned(machine: Machine, count: int) -> tuple[Array, Array]:
+    """Some rotations that the flange can have, and their headings."""
+    axes = machine.draw(count, np.random.default_rng(1))
+    rotations = machine.closure.poses(axes)[1]
+    return rotations, np.arctan2(rotations[:, 1, 0], rotations[:, 0, 0])
+
+
+def at_wrist_distance(machine: Machine, distance: float, count: int) -> tuple[Array, Array]:
+    """Poses whose wrist is at a distance from the base, in random directions."""
+    rotations, headings = turned(machine, count)
+    directions = np.random.default_rng(2).uniform(-np.pi, np.pi, count)
+    beyond = ([*lengths(machine), 0.0])[2]
+    positions = np.zeros((count, 3))
+    positions[:, 0] = distance * np.cos(directions) + beyond * np.cos(headings)
+    positions[:, 1] = distance * np.sin(directions) + beyond * np.sin(headings)
+    if len(machine.closure.task) == 3:
+        positions[:, 2] = 10.0
+    return positions, rotations
+
+
+def squared_sine(machine: Machine, position: Array, rotation: Array) -> Fraction:
+    """Of the elbow, exactly, for a pose as it is in floating point."""
+    first, second, third = (Fraction(v) for v in (*lengths(machine), 0.0)[:3])
+    x, y = Fraction(float(position[0])), Fraction(float(position[1]))
+    if third:
+        heading = np.arctan2(rotation[1, 0], rotation[0, 0])
+        x, y = x - third * Fraction(float(np.cos(heading))), y - third * Fraction(float(np.sin(heading)))
+    cosine = (x * x + y * y - first * first - second * second) / (2 * first * second)
+    return 1 - cosine * cosine
+
+
+def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
+    """Stretched and folded, exactly and beside: refused where the squared sine is below -1e-12, and only there."""
+    outcomes = set()
+    for machine in machines:
+        if machine.robot.BRANCHES == 0:
+            continue
+        first, second = lengths(machine)[:2]
+        for edge in (first + second, abs(first - second)):
+            for relative in BESIDE:
+                frames = at_wrist_distance(machine, edge * (1 + relative), 6)
+                squares = [squared_sine(machine, p, r) for p, r in zip(*frames, strict=True)]
+                for slot in slots(machine):
+                    configuration = slot + (0,) * len(machine.robot.PERIOD_AXES)
+                    found, statuses = inverse(machine.robot, *frames, configuration)
+                    for square, status in zip(squares, statuses, strict=True):
+                        if abs(square + BOUNDARY) > BOUNDARY / 10:
+                            assert status == (Status.OK if square > -BOUNDARY else Status.UNREACHABLE), (relative, float(square))
+                            outcomes.add((np.sign(relative), int(status)))
+                    answered = statuses == Status.OK
+                    inside = tuple(f[answered] for f in frames)
+                    assert machine.miss(found[answered], *inside).max(initial=0.0) < 1e-11
+    if machines[0].robot.BRANCHES:
+        assert outcomes == {(-1, 0), (0, 0), (1, 0), (1, 3), (-1, 3)}
+    else:
+        assert all(locus.branch is None for machine in machines for locus in loci(machine))
+
+
+def test_far_away(machines: tuple[Machine, ...]) -> None:
+    """An arm does not reach the largest number; a gantry and a boom do."""
+    for machine in machines:
+        rotations, _ = turned(machine, 4)
+        positions = np.array([[1e9, 0, 0], [0, -1e9, 0], [1e6, 1e6, 0], [-7e8, 7e8, 0]])
+        _, statuses = machine.robot.inverse_batch(positions, rotations)
+        assert (statuses == (Status.UNREACHABLE if machine.robot.BRANCHES else Status.OK)).all()
+
+
+def test_the_plane_of_a_planar_machine(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """Met within 1e-6 of the sum of the lengths; a machine without lengths has one user's unit."""
+    for machine in machines:
+        axes = machine.draw(40, np.random.default_rng(3))
+        positions, rotations = machine.closure.poses(axes)
+        scale = sum(lengths(machine)) or 1.0
+        for factor, met in ((0.0, True), (0.999, True), (-0.999, True), (1.001, False), (-1.001, False), (1e3, False)):
+            shifted = positions + np.array([0.0, 0.0, factor * PLANE * scale])
+            found, statuses = inverse(machine.changed(check_limits=False), shifted, rotations)
+            expected = Status.OK if met or "z" in mechanism.task.position else Status.UNREACHABLE
+            assert (statuses == expected).all()
+            assert np.isnan(found[statuses != Status.OK]).all()
+            if expected is Status.UNREACHABLE:
+                assert refusal(machine.robot.inverse, (shifted[0], rotations[0])) is expected
+
+
+def test_a_tool_that_points_the_opposite_way(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
+    """No heading is nearest then; the least tilt away from it, there is one. Machines that do not turn do not look."""
+    for machine in machines:
+        axes = machine.draw(20, np.random.default_rng(4))
+        positions, rotations = machine.closure.poses(axes)
+        angles = np.random.default_rng(5).uniform(-np.pi, np.pi, 20)
+        horizontal = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+        half_turns = 2 * horizontal[:, :, None] * horizontal[:, None, :] - np.eye(3)
+        opposite = half_turns @ rotations
+        _, statuses = machine.robot.inverse_batch(positions, opposite)
+        turns = mechanism.task.turning is Turning.ABOUT_Z
+        assert (statuses == (Status.UNREACHABLE if turns else Status.OK)).all()
+        tilt = 1e-3
+        lean = np.array([[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]])
+        statuses = machine.changed(check_limits=False).inverse_batch(positions, lean @ opposite)[1]
+        assert (statuses == Status.OK).sum() >= (1 if lengths(machine)[2:] else 20)
+        if turns:
+            assert refusal(machine.robot.inverse, (positions[0], opposite[0])) is Status.UNREACHABLE
+            assert refusal(machine.robot.project, opposite[0]) is Status.UNREACHABLE
