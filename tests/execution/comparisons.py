@@ -12,6 +12,7 @@ from tests.execution.closeness import asked, assert_same
 from tests.execution.controller import NOT_INITIALIZED, OK, UNREACHABLE, Controller
 from tests.execution.samples import HALF_TURN, NO_TURN, Bytes, Sample, commands
 from tests.execution.twins import Twins
+from tests.execution.values import PROPERTIES_TYPE, meaningless
 
 Comparison = Callable[[Twins, Sample], None]
 BYTES = 32
@@ -50,7 +51,7 @@ def name(twins: Twins, sample: Sample) -> None:
 def axis_properties(twins: Twins, sample: Sample) -> None:
     """Types as declared, and the limits that the block keeps; beyond the axes a free linear one."""
     for index in (*range(6), 255, 2**32 - 1):
-        properties = twins.library.new("TRAFO.Axis_Properties")
+        properties = meaningless(twins.library, PROPERTIES_TYPE)
         twins.controller.block.call("GetAxisProperties", props=properties, udiAxis=index)
         limits = properties.limits
         found = properties.eType, limits.xUnlimited, limits.dLower, limits.dUpper

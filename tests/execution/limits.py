@@ -10,14 +10,19 @@ from tests.mechanisms.machines import Array, Machine, machine, machines_of
 
 WIDE = (0.1, 0.9)
 """Limits stand at these quantiles of random axis values, so that some poses are beyond them."""
-NARROW = (0.4, 0.6)
-"""The same for limits that leave an axis one turn at most."""
+NARROW = (0.55, 0.75)
+"""The same for limits that leave an axis one turn at most, and not the one around 0."""
 LESS_THAN_A_TURN = 350.0
+EXACTLY_A_TURN = "limited to exactly a turn"
+TURN = {"lower": -180.0, "upper": 180.0}
 
 
 def limited_machines(mechanism: Mechanism) -> tuple[Machine, ...]:
-    """The last random machine with limits on everything that can have them."""
+    """The last random machine with limits on everything that can have them, and one whose axes have just one turn."""
+    plain = machines_of(mechanism)[0].given
+    turns = {f"{end}_{j.key}": value for j in mechanism.joints if j.is_angle for end, value in TURN.items()}
     return (
+        machine(mechanism, EXACTLY_A_TURN, plain | turns),
         _limited(mechanism, "limited", WIDE, True),
         _limited(mechanism, "limited to a turn", NARROW, True),
         _limited(mechanism, "limits not checked", WIDE, False),
@@ -44,10 +49,11 @@ def is_inside(machine: Machine, axes: Array) -> Array:
 
 def draw_inside(machine: Machine, count: int, rng: Generator) -> Array:
     """Random axis values of regular poses inside the limits."""
-    given = machine.robot.parameters
-    ends = [(given[f"lower_{j.key}"], given[f"upper_{j.key}"]) for j in machine.mechanism.joints]
-    columns = [rng.uniform(*end, 100 * count) for end in ends]
-    axes = np.stack(columns, axis=1)
+    axes = machine.draw(100 * count, rng)
+    for column, joint in zip(axes.T, machine.mechanism.joints, strict=True):
+        lower, upper = (machine.robot.parameters[f"{end}_{joint.key}"] for end in ("lower", "upper"))
+        if (lower, upper) != (0.0, 0.0):
+            column[:] = rng.uniform(lower, upper, len(column))
     return axes[machine.is_regular(axes) & is_inside(machine, axes)][:count]
 
 

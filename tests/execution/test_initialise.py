@@ -69,7 +69,7 @@ def as_integers(parameter: Parameter, given: dict[str, float]) -> dict[str, floa
     return given | {parameter.name: int(given[parameter.name])} if parameter.role is Role.SIGN else given
 
 
-@pytest.mark.parametrize(("lower", "upper"), [(10.0, 10.0), (10.0, -10.0), (0.0, -10.0), (10.0, 0.0)])
+@pytest.mark.parametrize(("lower", "upper"), [(10.0, 10.0), (10.0, -10.0), (0.0, -10.0), (10.0, 0.0), (0.2, 0.2)])
 def test_limits_are_in_order(mechanism: Mechanism, lower: float, upper: float) -> None:
     one = twins_of(mechanism)[0]
     for key in (*(j.key for j in mechanism.joints), *(q.name for q in mechanism.limited)):

@@ -7,6 +7,7 @@ import numpy as np
 from tests.execution.controller import OK, UNREACHABLE, Controller
 from tests.execution.samples import Sample
 from tests.execution.twins import Twins
+from tests.execution.values import PROPERTIES_TYPE, meaningless
 
 WIDTH = 1.0
 """How far the limit on the other side is."""
@@ -33,6 +34,20 @@ def test_every_limit_refuses_alone(twins: tuple[Twins, ...]) -> None:
                 assert status(one, sample, limits) == expected, f"{one} {sample} {limits}"
                 assert status(one, sample, limits | {"check_limits": False}) == OK
         assert chosen, name
+
+
+def test_small_limits_are_limits(twins: tuple[Twins, ...]) -> None:
+    """Only where both are 0 there is none."""
+    one = twins[0]
+    for index, joint in enumerate(one.mechanism.joints):
+        for lower, upper in ((-0.2, 0.1), (0.0, 0.3), (-0.3, 0.0)):
+            controller = Controller(one.library, one.mechanism)
+            limits = {f"lower_{joint.key}": lower, f"upper_{joint.key}": upper}
+            assert controller.initialise({**one.robot.parameters, **limits}) == OK
+            properties = meaningless(one.library, PROPERTIES_TYPE)
+            controller.block.call("GetAxisProperties", props=properties, udiAxis=index)
+            found = properties.limits.xUnlimited, properties.limits.dLower, properties.limits.dUpper
+            assert found == (False, lower, upper)
 
 
 def limited_value(one: Twins, sample: Sample, name: str) -> float | None:

@@ -17,6 +17,7 @@ from tests.st.library import Library
 
 __all__ = ["MECHANISMS", "Twins", "twins_of"]
 
+
 @dataclass(frozen=True)
 class Twins:
     """A machine, and its two implementations."""

@@ -41,9 +41,7 @@ def compiled(mechanism: Mechanism, order: str = "rows", matrix_size: int = 72, m
 
 
 @cache
-def compiled_text(
-    file: str, text: str, order: str = "rows", matrix_size: int = 72, max_config_data: int = 31
-) -> Library:
+def compiled_text(file: str, text: str, order: str = "rows", matrix_size: int = 72, max_config_data: int = 31) -> Library:
     """A text, compiled together with the shared objects."""
     return compile_st({**shared_texts(), file: text}, order, matrix_size, max_config_data)
 

@@ -16,6 +16,7 @@ MEANINGLESS = -4711.5
 """What stands in a real variable before a method is called."""
 MEANINGLESS_BYTE = 0xAB
 AXES_TYPE, BYTES_TYPE, IMAGE_TYPE = "TRAFO.AXISPOS_REF", "TRAFO.CONFIGDATA", "TRAFO.OrientationSpace"
+PROPERTIES_TYPE = "TRAFO.Axis_Properties"
 FRAME_TYPE, MATRIX_TYPE, VECTOR_TYPE = "SM3M.SMC_Frame", "SM3M.SMC_Matrix3", "SM3M.SMC_Vector3D"
 
 Numbers = Sequence[float]
@@ -99,6 +100,8 @@ def filled(value: Any) -> Any:
             put(value, path, MEANINGLESS)
         elif isinstance(found, int) and not isinstance(found, bool):
             put(value, path, MEANINGLESS_BYTE)
+        elif path[-1:] == ("dof",):
+            put(value, path, "three")
     return value
 
 
