@@ -27,7 +27,8 @@ def cosine(angle: sp.Symbol) -> sp.Symbol:
 def polynomial(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence[sp.Symbol]) -> sp.Expr:
     """The expanded polynomial of an expression: sines and cosines of sums become products of symbols.
 
-    `signs` are parameters that are +1 or -1: their squares are one, and they leave the argument of a cosine.
+    `signs` are parameters that are +1 or -1 (never zero: their squares are one, and they leave the argument of a
+    cosine), and flags that are 0 or 1 (their squares are themselves).
     """
     terms = sp.expand_trig(sp.expand(expression))  # first: a sign leaves an argument only where nothing is added to it
     expanded = _without_signs(terms, signs).subs(sp.pi, 180 * DEGREE)
@@ -39,7 +40,7 @@ def polynomial(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence
 
 
 def _without_signs(expression: sp.Expr, signs: Sequence[sp.Symbol]) -> sp.Expr:
-    for sign in signs:
+    for sign in (s for s in signs if s.is_nonzero):
         expression = _without_sign(expression, sign)
     return expression
 
@@ -59,12 +60,12 @@ def _is_multiple(argument: sp.Expr, sign: sp.Symbol) -> bool:
 @cache
 def _reduction(angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> dict[sp.Symbol, sp.Expr]:
     table: dict[sp.Symbol, sp.Expr] = {sine(a): 1 - cosine(a) ** 2 for a in angles}
-    table.update({s: sp.Integer(1) for s in signs})
+    table.update({s: sp.Integer(1) if s.is_nonzero else s for s in signs})
     return table
 
 
 def reduce_units(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence[sp.Symbol] = ()) -> sp.Expr:
-    """The normal form: squares of sines become 1 - cos^2, squares of signs 1, everything expanded."""
+    """The normal form: squares of sines become 1 - cos^2, squares of signs 1, of flags the flag; everything expanded."""
     table = _reduction(tuple(angles), tuple(signs))
 
     def lower(power: sp.Pow) -> sp.Expr:

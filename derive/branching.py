@@ -9,13 +9,13 @@ import numpy as np
 import sympy as sp
 
 from derive.algebra import reduce_units
-from derive.closure import angles_of
+from derive.closure import all_angles, with_fixed_angles
 from derive.forward import Forward, derivation_at_axes, named_trigonometry
 from derive.inverse import Inverse
 from derive.mechanism import Branch, DescriptionError, Mechanism
 from derive.passes import assemble
 from derive.problem import Slope
-from derive.program import Let, Output, Require, Statement, Status, real
+from derive.program import Let, Output, Statement, Status, real, rewritten
 from derive.run import run
 from derive.sampling import sample_axes, sample_machine
 
@@ -38,7 +38,7 @@ class Assignment:
     def margin(self, mechanism: Mechanism) -> sp.Expr:
         """The signed, scaled slope: positive is byte 1."""
         value = sp.cancel(self.orientation * self.slope.value / self.slope.scale)
-        return reduce_units(value, angles_of(mechanism)) if value.is_polynomial() else value
+        return reduce_units(value, all_angles(mechanism)) if value.is_polynomial() else value
 
 
 def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool = False) -> tuple[Assignment, ...]:
@@ -48,6 +48,8 @@ def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_ze
     branches of the machine only where the point is the flange itself.
     """
     slopes = inverse.derivation.slopes
+    if not slopes and not mechanism.branches:
+        return ()
     signs, indicators = _signs(mechanism, inverse, forward, optional_zero)
     found: list[Assignment] = []
     for branch, indicator in zip(mechanism.branches, indicators, strict=True):
@@ -68,7 +70,9 @@ def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_ze
 def _signs(
     mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    lets, indicators = named_trigonometry(mechanism, [b.indicator * b.signs[0] for b in mechanism.branches])
+    lets, indicators = named_trigonometry(
+        mechanism, [with_fixed_angles(mechanism, b.indicator) * b.signs[0] for b in mechanism.branches]
+    )
     slopes = [s.value for s in inverse.derivation.slopes]
     named = [Let(real(f"sign_{k}"), v) for k, v in enumerate([*slopes, *indicators])]
     statements = (*derivation_at_axes(mechanism, inverse, forward), *lets, *named)
@@ -79,7 +83,7 @@ def _signs(
     values, status = run(program, samples)
     good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
     if not good.any():
-        raise DescriptionError("no sampled pose is possible: a quantity that must be positive never is")
+        raise DescriptionError("no sampled pose is possible: a quantity that must be positive never is, or the loop never closes")
     rows = [np.sign(np.broadcast_to(values[n.name.name], (_SAMPLES,))[good]) for n in named]
     return rows[: len(slopes)], rows[len(slopes) :]
 
@@ -87,13 +91,7 @@ def _signs(
 def with_branch_signs(statements: Sequence[Statement], assignments: Sequence[Assignment]) -> tuple[Statement, ...]:
     """The derivation with every sign replaced by that of its branch."""
     table = {a.slope.sigma: a.orientation * a.sigma for a in assignments}
-    renamed: list[Statement] = []
-    for s in statements:
-        if isinstance(s, Require):
-            renamed.append(Require(s.condition.xreplace(table), s.otherwise, s.note))
-        else:
-            renamed.append(Let(s.name, s.value.xreplace(table), s.note))
-    return tuple(renamed)
+    return tuple(rewritten(s, lambda e: e.xreplace(table)) for s in statements)
 
 
 def margin_lets(mechanism: Mechanism, assignments: Sequence[Assignment]) -> tuple[Let, ...]:

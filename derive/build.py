@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from derive.assembling import Assembled, assembled, assembly_checks, bound_checks
 from derive.branching import Assignment, assign, margin_lets, with_branch_signs
 from derive.closure import flange_rotation, heading_of
 from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program
@@ -22,8 +23,10 @@ from derive.forward import (
 from derive.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics import Freedom, Kinematics, Margin
 from derive.mechanism import DescriptionError, Mechanism, Turning
+from derive.newton import START_POSITION, START_ROTATION, at_given, at_home, platform_pose
 from derive.parameters import machine_parameters, setup_program
 from derive.passes import assemble, hoist
+from derive.platform import MARGIN, platform_checks, platform_singularity
 from derive.pose import pose_of
 from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real
 from derive.shared_names import refuse_shared_names
@@ -33,21 +36,26 @@ from derive.solve import Unsolved
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive everything. Raises `Unsolved` or `DescriptionError` where the description does not allow it."""
     _count(mechanism)
-    forward = pose_at_axes(mechanism)
+    if mechanism.task.turning is Turning.FULL:
+        return _platform(mechanism)
+    closed = assembled(mechanism, pose_at_axes(mechanism))
+    forward = closed.forward
     inverse = solve_pose(mechanism)
     refuse_shared_names(mechanism, (*forward.statements, *inverse.naming, *inverse.derivation.statements))
     assignments = assign(mechanism, inverse, forward)
     at_axes = derivation_at_axes(mechanism, inverse, forward)
     margins = margin_lets(mechanism, assignments)
     jacobian = jacobian_program(mechanism, forward)
-    factors = [*(Factor(a.branch.name, a.margin(mechanism)) for a in assignments), *_measures(inverse)]
+    factors = [*(Factor(a.branch.margin, a.margin(mechanism)) for a in assignments), *_measures(inverse)]
+    if mechanism.assembly is not None and closed.margin is not None:
+        factors.append(Factor(mechanism.assembly.margin, closed.margin))
     singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian)
     statements = with_branch_signs(inverse.derivation.statements, assignments)
     forward_only = replace(forward, statements=at_axes)
     programs = [
         forward_program(mechanism, forward_only, margins),
         orientation_program(forward),
-        inverse_program("branch", mechanism, inverse, statements),
+        inverse_program("branch", mechanism, inverse, statements, _last(mechanism, closed, statements, offset=False)),
         _limits_program(mechanism),
         singularity,
         jacobian,
@@ -56,13 +64,35 @@ def build(mechanism: Mechanism) -> Kinematics:
     if mechanism.task.turning is not Turning.NONE:
         programs.append(_projection_program(mechanism))
     if mechanism.offset_interface:
-        programs += _offset_programs(mechanism, forward)
+        programs += _offset_programs(mechanism, closed)
     return _finished(mechanism, programs, kept)
+
+
+def _platform(mechanism: Mechanism) -> Kinematics:
+    """A platform that moves with its whole pose: forward kinematics iterates, one determinant is the margin."""
+    inverse = solve_pose(mechanism)
+    if inverse.derivation.slopes or mechanism.branches:
+        raise DescriptionError("a platform that moves freely has no branches: its closure must determine every joint")
+    statements = inverse.derivation.statements
+    forward, from_start = (platform_pose(mechanism, start(mechanism)) for start in (at_home, at_given))
+    checks = (*platform_checks(mechanism, (*inverse.naming, *statements)), *bound_checks(mechanism, offset=False))
+    programs = [
+        forward_program(mechanism, forward, ()),
+        replace(forward_program(mechanism, from_start, ()), name="forward_from"),
+        orientation_program(forward),
+        inverse_program("branch", mechanism, inverse, statements, checks),
+        _limits_program(mechanism),
+        platform_singularity(forward.statements),
+        jacobian_program(mechanism, forward),
+        _image_program(mechanism),
+        _projection_program(mechanism),
+    ]
+    return _finished(mechanism, programs, (Margin(MARGIN, -1, "type 2"),))
 
 
 def _count(mechanism: Mechanism) -> None:
     """More conditions than joints or coordinates cannot be met, and no step would notice."""
-    rows, joints, equations = jacobian_rows(mechanism), mechanism.joints, mechanism.closure
+    rows, joints, equations = jacobian_rows(mechanism), mechanism.joints, mechanism.equations
     commanded = f"{len(rows)} quantities ({', '.join(rows)})"
     if len(rows) > len(joints):
         raise DescriptionError(f"the task commands {commanded}, and there are only {len(joints)} joints")
@@ -97,6 +127,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
         margins=margins,
         freedom=_freedom(mechanism),
         reads_rotation=mechanism.task.turning is not Turning.NONE,
+        forward_from=finished.get("forward_from"),
     )
 
 
@@ -105,25 +136,34 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
     allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
     allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
+    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION)}
     strangers = [s.name for s in program.inputs if s.name not in allowed]
     if strangers:
         raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
 
 
 def _measures(inverse: Inverse) -> list[Factor]:
-    return [Factor(f"free_{m.angle.name}", m.value / m.scale) for m in inverse.derivation.measures]
+    return [Factor(m.name, m.value / m.scale) for m in inverse.derivation.measures]
 
 
-def _offset_programs(mechanism: Mechanism, forward: Forward) -> list[Program]:
+def _last(
+    mechanism: Mechanism, closed: Assembled, statements: tuple[Statement, ...], *, offset: bool
+) -> tuple[Statement, ...]:
+    """What must hold at a solution of the inverse, beyond the closure."""
+    return (*assembly_checks(mechanism, closed, statements, offset), *bound_checks(mechanism, offset))
+
+
+def _offset_programs(mechanism: Mechanism, closed: Assembled) -> list[Program]:
+    forward = closed.forward
     try:
         inverse = solve_offset(mechanism)
         refuse_shared_names(mechanism, (*inverse.naming, *inverse.derivation.statements))
-        assignments = assign(mechanism, inverse, forward, optional_zero=True)
+        assignments = assign(mechanism, inverse, forward, optional_zero=bool(inverse.frozen))
     except (Unsolved, DescriptionError) as problem:
         raise type(problem)(f"with offset_interface=False it could be built, but for a point off the flange {problem}") from None
     statements = with_branch_signs(inverse.derivation.statements, assignments)
     return [
-        inverse_program("offset_branch", mechanism, inverse, statements),
+        inverse_program("offset_branch", mechanism, inverse, statements, _last(mechanism, closed, statements, offset=True)),
         _offset_configuration(mechanism, inverse, forward, assignments),
     ]
 
@@ -157,6 +197,9 @@ def _inside(key: str, value: sp.Symbol, note: str) -> Require:
 
 def _projection_program(mechanism: Mechanism) -> Program:
     """The nearest rotation that the flange can have."""
+    if mechanism.task.turning is Turning.FULL:
+        own = [Output(r.name, r) for r in ROTATION_ENTRIES]
+        return assemble("projection", (*finite(ROTATION_ENTRIES), *is_rotation()), own)
     assert mechanism.chain is not None
     cos_heading, sin_heading = real("cos_heading"), real("sin_heading")
     turned = sp.Matrix([[cos_heading, -sin_heading, 0], [sin_heading, cos_heading, 0], [0, 0, 1]])
@@ -166,7 +209,9 @@ def _projection_program(mechanism: Mechanism) -> Program:
 
 
 def _freedom(mechanism: Mechanism) -> Freedom:
-    """Stated closures keep their orientation; a chain's rotation may turn about z with the joints."""
+    """Stated closures keep their orientation or follow all of it; a chain's rotation may turn about z with the joints."""
+    if mechanism.task.turning is Turning.FULL:
+        return Freedom.THREE
     if mechanism.chain is None:
         return Freedom.ZERO
     joints = {j.symbol for j in mechanism.joints}

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.algebra import is_compound, polynomial, split_known
+from derive.algebra import cosine, is_compound, polynomial, reduce_units, sine, split_known
 from derive.frames import Chain, Factor, Motion, Txyz
-from derive.mechanism import DescriptionError, Joint, Mechanism, Role, Turning
+from derive.mechanism import DescriptionError, Joint, Mechanism, Rod, Role, Turning
 from derive.pose import pose_of
 from derive.problem import Equation
-from derive.program import Let, real
+from derive.program import DEGREE, Let, real
 
 COORDINATES = ("x", "y", "z")
 HEADING = real("heading")
@@ -37,8 +37,30 @@ class Closure:
 
 
 def signs_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
-    """The parameters that are +1 or -1."""
-    return tuple(p.symbol for p in mechanism.parameters if p.role is Role.SIGN)
+    """The parameters that are +1 or -1, and those that are 0 or 1."""
+    return tuple(p.symbol for p in mechanism.parameters if p.role in (Role.SIGN, Role.FLAG))
+
+
+def fixed_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """The angles of the machine that never move: its angle parameters, in degrees."""
+    return tuple(p.symbol for p in mechanism.parameters if p.role is Role.ANGLE)
+
+
+def fixed_angle_lets(mechanism: Mechanism) -> tuple[Let, ...]:
+    """Their cosines and sines."""
+    functions = ((cosine, sp.cos), (sine, sp.sin))
+    return tuple(Let(f(a), g(a * DEGREE)) for a in fixed_angles(mechanism) for f, g in functions)
+
+
+def all_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """Every angle whose sine and cosine have names."""
+    return (*angles_of(mechanism), *fixed_angles(mechanism))
+
+
+def with_fixed_angles(mechanism: Mechanism, expression: sp.Expr) -> sp.Expr:
+    """The expression with the sines and cosines of fixed angles under their names."""
+    functions = ((cosine, sp.cos), (sine, sp.sin))
+    return sp.sympify(expression).xreplace({g(a * DEGREE): f(a) for a in fixed_angles(mechanism) for f, g in functions})
 
 
 def angles_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
@@ -128,16 +150,64 @@ def _position_closure(mechanism: Mechanism, position: sp.ImmutableMatrix) -> Clo
     return Closure(tuple(equations), _arguments(position), (), plane)
 
 
-def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol]) -> Closure:
-    """The stated equations; with an offset they hold for the flange, which keeps its orientation."""
+def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: str = "span") -> Closure:
+    """The stated equations; with an offset they hold for the flange, which keeps its orientation.
+
+    `known` says what is known of a rod: its "span" where the joints are wanted, its "pivot" where the position is.
+    """
     lets = tuple(Let(real(f"flange_{c}"), real(c) - o, "the flange behind the point") for c, o in offset.items())
     table = {real(c): real(f"flange_{c}") for c in offset}
-    equations = tuple(
+    wanted = {j.symbol for j in mechanism.joints} if known == "span" else set(map(real, COORDINATES))
+    equations = [
         _equation(mechanism, _label(e, number), sp.sympify(e).xreplace(table))
         for number, e in enumerate(mechanism.closure, 1)
-    )
+    ]
+    equations += [_rod_equation(mechanism, rod, table, (known, wanted)) for rod in mechanism.rods]
     plane = None if "z" in mechanism.task.position else offset.get("z", sp.Integer(0))
-    return Closure(equations, _arguments(mechanism.closure), lets, plane)
+    return Closure(tuple(equations), _arguments(mechanism.equations), lets, plane)
+
+
+def position_closure(mechanism: Mechanism) -> Closure:
+    """The stated equations as equations in the position, the joints known."""
+    return _stated_closure(mechanism, {}, "pivot")
+
+
+def _rod_equation(
+    mechanism: Mechanism, rod: Rod, table: dict[sp.Symbol, sp.Symbol], sought: tuple[str, set[sp.Symbol]]
+) -> Equation:
+    """|plate - base|^2 = length^2, the known part of every coordinate under one name."""
+    word, wanted = sought
+    unknown = {s for v in wanted for s in (v, sine(v), cosine(v))}
+    lets: list[Let] = []
+    total: sp.Expr = -(rod.length**2)
+    for name, plate, base in zip(COORDINATES, rod.plate, rod.base, strict=False):
+        between = with_fixed_angles(mechanism, (plate - base).xreplace(table))
+        form = polynomial(between, all_angles(mechanism), signs_of(mechanism))
+        moving, known = split_known(form, unknown)
+        side = 1 if word == "span" else -1  # a span is seen from the base, a pivot is where the rod is held
+        known = side * known
+        if is_compound(known):
+            lets.append(Let(real(f"{word}_{rod.name}_{name}"), known, f"rod {rod.name}"))
+            known = lets[-1].name
+        total += (moving + side * known) ** 2
+    expression = reduce_units(total, all_angles(mechanism), signs_of(mechanism))
+    return Equation(f"rod {rod.name}", expression, tuple(lets), _rod_scales(mechanism, rod))
+
+
+def _rod_scales(mechanism: Mechanism, rod: Rod) -> dict[sp.Symbol, sp.Expr]:
+    """2 * length * how fast an end of the rod moves with a joint or with the position, where that is a constant."""
+    scales: dict[sp.Symbol, sp.Expr] = {}
+    for symbol in (*(j.symbol for j in mechanism.joints), *(real(c) for c in COORDINATES)):
+        rates = [sp.diff(p - b, symbol) for p, b in zip(rod.plate, rod.base, strict=True)]
+        square = polynomial(with_fixed_angles(mechanism, sum(r**2 for r in rates)), all_angles(mechanism), signs_of(mechanism))
+        if square != 0 and not square.free_symbols & set(_moving_symbols(mechanism)):
+            scales[symbol] = 2 * rod.length * sp.sqrt(sp.factor(square))
+    return scales
+
+
+def _moving_symbols(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    joints = [j.symbol for j in mechanism.joints]
+    return (*joints, *(f(a) for a in joints for f in (sine, cosine)), *(real(c) for c in COORDINATES))
 
 
 def _label(equation: sp.Expr, number: int) -> str:
@@ -151,5 +221,5 @@ def _arguments(expressions: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
 
 
 def _equation(mechanism: Mechanism, label: str, expression: sp.Expr) -> Equation:
-    return Equation(label, polynomial(expression, angles_of(mechanism), signs_of(mechanism)))
+    return Equation(label, polynomial(with_fixed_angles(mechanism, expression), all_angles(mechanism), signs_of(mechanism)))
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from itertools import combinations, product
+from collections.abc import Sequence
+from itertools import product
 
 import sympy as sp
 
-from derive.algebra import polynomial
+from derive.algebra import cosine, polynomial, sine
 from derive.program import real
 
 Terms = tuple[tuple[sp.Symbol, int], ...]
@@ -43,19 +43,16 @@ def terms_of(argument: sp.Expr, angles: Sequence[sp.Symbol]) -> Terms | None:
 
 def recognise(expression: sp.Expr, angles: Sequence[sp.Symbol]) -> tuple[int, str, Terms] | None:
     """(sign, "cos" or "sin", terms) where the expression is ± the cosine or sine of a sum of two or more angles."""
-    for terms in _sums(angles):
+    present = tuple(a for a in angles if expression.free_symbols & {sine(a), cosine(a)})
+    if len(present) < 2 or expression.free_symbols - {f(a) for a in present for f in (sine, cosine)}:
+        return None
+    for signs in product((1, -1), repeat=len(present) - 1):
+        terms: Terms = tuple(zip(present, (1, *signs), strict=True))
         argument = sp.Add(*[a * s for a, s in terms])
         for word, function in (("cos", sp.cos), ("sin", sp.sin)):
-            form = polynomial(function(argument), angles, ())
+            form = polynomial(function(argument), present, ())
             if sp.expand(expression - form) == 0:
                 return 1, word, terms
             if sp.expand(expression + form) == 0:
                 return -1, word, terms
     return None
-
-
-def _sums(angles: Sequence[sp.Symbol]) -> Iterator[Terms]:
-    for size in range(2, len(angles) + 1):
-        for chosen in combinations(angles, size):
-            for signs in product((1, -1), repeat=size - 1):
-                yield tuple(zip(chosen, (1, *signs), strict=True))

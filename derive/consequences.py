@@ -1,12 +1,14 @@
 """General consequences of equations, in tiers: each is tried only when the previous gives no subproblem.
 
 * difference: an unknown length that two equations hold affinely is eliminated between them;
+* elimination: an unknown length that one equation holds affinely with a number before it is put into the others;
 * squares: the sum of the squares of two equations, known parts on the other side, loses the angle that
   turns both (the law of cosines).
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 
 import sympy as sp
@@ -31,6 +33,24 @@ def differences(problem: Problem) -> tuple[Equation, ...]:
             expression = reduce_units(b * first.expression - a * second.expression, problem.units, problem.signs)
             label = f"{first.label} and {second.label}"
             found.append(Equation(label, expression, first.lets + second.lets))
+    return tuple(found)
+
+
+def eliminations(problem: Problem) -> tuple[Equation, ...]:
+    """Equations in which one unknown length has been written through another equation."""
+    found: list[Equation] = []
+    for source in problem.equations:
+        for unknown in problem.lengths:
+            linear = linear_coefficients(source.expression, (unknown,))
+            if linear is None or linear[0][0] == 0 or linear[0][0].free_symbols:
+                continue
+            value = -linear[1] / linear[0][0]
+            for target in problem.equations:
+                if target is source or unknown not in target.expression.free_symbols:
+                    continue
+                expression = reduce_units(target.expression.xreplace({unknown: value}), problem.units, problem.signs)
+                label = f"{target.label} (through {source.label})"
+                found.append(replace(target, label=label, expression=expression, lets=source.lets + target.lets))
     return tuple(found)
 
 

@@ -9,32 +9,42 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from derive.closure import with_fixed_angles
 from derive.forward import Forward, named_trigonometry
 from derive.frames import Motion
 from derive.kinematics import Margin
 from derive.mechanism import DescriptionError, Mechanism, Turning
+from derive.parameters import SCALE
 from derive.passes import assemble
+from derive.platform import platform_jacobian
 from derive.pose import Screw, pose_of
-from derive.program import Let, Output, Program, Statement, Status, real
+from derive.program import FREE_ANGLE, Let, Output, Program, Require, Select, Statement, Status, real
 from derive.run import run
 from derive.sampling import sample_axes, sample_machine
+
+_TURNS = {Turning.NONE: (), Turning.ABOUT_Z: ("turn z",), Turning.FULL: ("turn x", "turn y", "turn z")}
 
 
 def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
     """The task's rows: commanded positions, then the commanded turn."""
-    turn = ("turn z",) if mechanism.task.turning is Turning.ABOUT_Z else ()
-    return (*mechanism.task.position, *turn)
+    return (*mechanism.task.position, *_TURNS[mechanism.task.turning])
 
 
 def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
     """Rows of the task by axes; rotary axes per radian."""
-    matrix = _by_screws(mechanism) if mechanism.chain is not None else _by_closure(mechanism)
-    coupled = matrix * _motor_matrix(mechanism)
-    entries = [sp.expand_mul(e) for e in coupled]
-    lets, values = named_trigonometry(mechanism, entries)
     width = len(mechanism.joints)
-    outputs = [Output(f"j{k // width + 1}{k % width + 1}", v) for k, v in enumerate(values)]
-    return assemble("jacobian", (*forward.statements, *lets), outputs)
+    if mechanism.task.turning is Turning.FULL:
+        solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
+        return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, width))
+    matrix, naming = (_by_screws(mechanism), ()) if mechanism.chain is not None else _by_closure(mechanism)
+    coupled = matrix * _motor_matrix(mechanism)
+    entries = [sp.expand_mul(e) if mechanism.chain is not None else e for e in coupled]
+    lets, values = named_trigonometry(mechanism, entries)
+    return assemble("jacobian", (*forward.statements, *naming, *lets), _entries_of(values, width))
+
+
+def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:
+    return [Output(f"j{k // width + 1}{k % width + 1}", v) for k, v in enumerate(values)]
 
 
 def _by_screws(mechanism: Mechanism) -> sp.Matrix:
@@ -61,13 +71,41 @@ def _twist(screw: Screw, position: sp.ImmutableMatrix) -> sp.Matrix:
     return sp.Matrix.vstack(direction.cross(sp.Matrix(position - screw.origin)), direction)
 
 
-def _by_closure(mechanism: Mechanism) -> sp.Matrix:
-    """Stated equations: -A^-1 B, with A = dΦ/dx free of the pose."""
-    closure = sp.Matrix([sp.sympify(e) for e in mechanism.closure])
-    pose = closure.jacobian([real(c) for c in mechanism.task.position])
-    if pose.free_symbols or pose.det() == 0:
-        raise DescriptionError("the closure does not determine the position affinely")
-    return -pose.inv() * closure.jacobian([j.symbol for j in mechanism.joints])
+def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]:
+    """Stated equations: -A^-1 B with A = dΦ/dx, B = dΦ/dq, by the adjugate; singular where det A vanishes (type 2)."""
+    closure = sp.Matrix([with_fixed_angles(mechanism, e) for e in mechanism.equations])
+    by_pose = closure.jacobian([real(c) for c in mechanism.task.position])
+    by_joints = closure.jacobian([j.symbol for j in mechanism.joints])
+    if by_pose.rows != by_pose.cols:
+        raise DescriptionError(f"{by_pose.rows} closure equations for {by_pose.cols} commanded coordinates")
+    if not by_pose.free_symbols:
+        return -by_pose.inv() * by_joints, ()
+    entries, lets = _entries(mechanism, by_pose, mechanism.task.position)
+    drives, more = _entries(mechanism, by_joints, [j.key for j in mechanism.joints])
+    determinant, divisor = real("determinant"), real("determinant_divisor")
+    determined = sp.Gt(sp.Abs(determinant), FREE_ANGLE * SCALE**by_pose.rows)
+    statements: tuple[Statement, ...] = (
+        *lets,
+        *more,
+        Let(determinant, entries.det(), "of the closure by the position: zero in a type 2 singularity"),
+        Require(determined, Status.IMPOSSIBLE, "nothing controls the plate"),
+        Let(divisor, Select(determined, determinant, sp.Integer(1))),
+    )
+    return -entries.adjugate() * drives / divisor, statements
+
+
+def _entries(
+    mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str]
+) -> tuple[sp.Matrix, tuple[Let, ...]]:
+    """The entries of a matrix of derivatives under names of their own, `slope_<equation>_by_<unknown>`."""
+    trigonometric, values = named_trigonometry(mechanism, list(matrix))
+    lets: list[Let] = [*trigonometric]
+    entries = []
+    for k, value in enumerate(values):
+        if value != 0:
+            lets.append(Let(real(f"slope_{k // matrix.cols + 1}_by_{names[k % matrix.cols]}"), value))
+        entries.append(lets[-1].name if value != 0 else sp.Integer(0))
+    return sp.Matrix(matrix.rows, matrix.cols, entries), tuple(lets)
 
 
 def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:

@@ -31,9 +31,9 @@ def finite(symbols: Sequence[sp.Symbol]) -> tuple[Require, ...]:
     return (Require(sp.And(*conditions), Status.BAD_INPUT, "numbers of reasonable size"),) if conditions else ()
 
 
-def is_rotation() -> tuple[Require, ...]:
-    """The commanded rotation must be one: R^T R is the identity, and its determinant is positive."""
-    rotation = sp.Matrix(3, 3, ROTATION_ENTRIES)
+def is_rotation(entries: Sequence[sp.Symbol] = ROTATION_ENTRIES) -> tuple[Require, ...]:
+    """A commanded rotation must be one: R^T R is the identity, and its determinant is positive."""
+    rotation = sp.Matrix(3, 3, entries)
     product = rotation.T * rotation
     orthonormal = [
         sp.Le(sp.Abs(product[i, j] - (1 if i == j else 0)), ROTATION) for i in range(3) for j in range(i, 3)

@@ -3,22 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from derive.algebra import cosine, polynomial, sine
-from derive.closure import COORDINATES, HEADING, angles_of, heading_of, pose_closure, signs_of
+from derive.closure import (
+    COORDINATES,
+    HEADING,
+    all_angles,
+    angles_of,
+    fixed_angle_lets,
+    heading_of,
+    position_closure,
+    signs_of,
+)
 from derive.composite import name_of, terms_of
 from derive.edges import ROTATION_ENTRIES, finite, frozen_lets, joint_lets
 from derive.inverse import Inverse
-from derive.mechanism import Mechanism, Turning
+from derive.mechanism import DescriptionError, Mechanism, Turning
 from derive.parameters import SCALE
 from derive.passes import assemble
 from derive.pose import pose_of
-from derive.problem import Problem
-from derive.program import BOUNDARY, LIMIT, Let, Output, Program, Require, Select, Statement, Status, real
-from derive.solve import solve
+from derive.problem import Problem, Slope
+from derive.program import BOUNDARY, LIMIT, Let, Output, Program, Require, Select, Statement, Status, real, rewritten
+from derive.solve import Derivation, solve
+
+ASSEMBLY_SIGN = real("assembly_sign")
+"""The sign of the forward slope in this machine's assembly mode."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +40,8 @@ class Forward:
     statements: tuple[Statement, ...]
     position: tuple[sp.Expr, ...]
     rotation: tuple[sp.Expr, ...]
+    slope: Slope | None = None
+    """Of the step that has two solutions: its sign is the assembly mode."""
 
 
 def pose_at_axes(mechanism: Mechanism) -> Forward:
@@ -38,19 +52,38 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
         lets, values = named_trigonometry(mechanism, [*pose.position, *pose.rotation])
         position = tuple(Let(real(c), v) for c, v in zip(COORDINATES, values[:3], strict=True))
         return Forward((*checks, *lets, *position), tuple(p.name for p in position), tuple(values[3:]))
-    solved = _solve_for_position(mechanism)
-    lets, values = named_trigonometry(mechanism, [s.value for s in solved])
-    bound = tuple(Let(s.name, v, s.note) for s, v in zip(solved, values, strict=True))
+    joints = angles_of(mechanism)
+    trigonometric = tuple(Let(f(a), g(a)) for a in joints for f, g in ((cosine, sp.cos), (sine, sp.sin)))
+    derivation = _solve_for_position(mechanism)
+    slope = derivation.slopes[0] if derivation.slopes else None
+    known = (*checks, *fixed_angle_lets(mechanism), *trigonometric, *_in_assembly_mode(derivation, mechanism))
     position_values = tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATES)
-    return Forward((*checks, *lets, *bound), position_values, tuple(sp.eye(3)))
+    return Forward(known, position_values, tuple(sp.eye(3)), slope)
 
 
-def _solve_for_position(mechanism: Mechanism) -> tuple[Let, ...]:
+def _solve_for_position(mechanism: Mechanism) -> Derivation:
     """The stated closure solved for x, y and z: the same peeling, the joints known."""
-    unknown = tuple(real(c) for c in mechanism.task.position)
-    problem = Problem((), unknown, pose_closure(mechanism).equations, angles_of(mechanism), {}, SCALE, signs_of(mechanism))
+    closure = position_closure(mechanism)
+    problem = Problem(
+        angles=(),
+        lengths=tuple(real(c) for c in mechanism.task.position),
+        equations=closure.equations,
+        units=all_angles(mechanism),
+        free={},
+        scale=SCALE,
+        signs=signs_of(mechanism),
+    )
     derivation = solve(problem, (), lambda angle: ())
-    return tuple(s for s in derivation.statements if isinstance(s, Let))
+    if len(derivation.slopes) > 1 or bool(derivation.slopes) != (mechanism.assembly is not None):
+        raise DescriptionError(f"forward kinematics has {len(derivation.slopes)} two-root steps: one assembly names one")
+    return derivation
+
+
+def _in_assembly_mode(derivation: Derivation, mechanism: Mechanism) -> tuple[Statement, ...]:
+    """The derivation on the side that the machine is assembled on; where it does not close, no assembly is possible."""
+    sides = {s.sigma: ASSEMBLY_SIGN for s in derivation.slopes}
+    chosen = (rewritten(s, lambda e: e.xreplace(sides)) for s in derivation.statements)
+    return tuple(replace(s, otherwise=Status.IMPOSSIBLE) if isinstance(s, Require) else s for s in chosen)
 
 
 def _positive(mechanism: Mechanism) -> tuple[Statement, ...]:

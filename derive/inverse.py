@@ -12,7 +12,8 @@ from derive.closure import (
     HEADING,
     OFFSET,
     Closure,
-    angles_of,
+    all_angles,
+    fixed_angle_lets,
     flange_rotation,
     offset_closure,
     pose_closure,
@@ -55,7 +56,7 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded pose for the joints."""
     closure = pose_closure(mechanism)
     derivation = _solve(mechanism, closure, mechanism.joints)
-    naming = (*reference_lets(mechanism), *_heading(mechanism), *closure.lets)
+    naming = (*reference_lets(mechanism), *fixed_angle_lets(mechanism), *_heading(mechanism), *closure.lets)
     return Inverse(closure, derivation, naming, mechanism.joints)
 
 
@@ -66,7 +67,8 @@ def solve_offset(mechanism: Mechanism) -> Inverse:
     closure = offset_closure(mechanism, moving)
     derivation = _solve(mechanism, closure, moving)
     kept = tuple(s for j in frozen for s in frozen_lets(j))
-    return Inverse(closure, derivation, (*reference_lets(mechanism), *kept, *closure.lets), moving, frozen)
+    naming = (*reference_lets(mechanism), *fixed_angle_lets(mechanism), *kept, *closure.lets)
+    return Inverse(closure, derivation, naming, moving, frozen)
 
 
 def _solve(mechanism: Mechanism, closure: Closure, moving: tuple[Joint, ...]) -> Derivation:
@@ -75,11 +77,11 @@ def _solve(mechanism: Mechanism, closure: Closure, moving: tuple[Joint, ...]) ->
         angles=tuple(j.symbol for j in moving if j.is_angle),
         lengths=tuple(j.symbol for j in moving if not j.is_angle),
         equations=closure.equations,
-        units=(*angles_of(mechanism), HEADING),
+        units=(*all_angles(mechanism), HEADING),
         free={j.symbol: free(j) for j in mechanism.joints},
         scale=SCALE,
         signs=signs_of(mechanism),
-        positive=tuple(polynomial(p, angles_of(mechanism), signs_of(mechanism)) for p in mechanism.positive),
+        positive=tuple(polynomial(p, all_angles(mechanism), signs_of(mechanism)) for p in mechanism.positive),
     )
     return solve(problem, closure.arguments, lambda angle: (*axis_lets(joints[angle]), plain_angle(joints[angle])))
 
@@ -121,11 +123,15 @@ def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
 def _heading(mechanism: Mechanism) -> tuple[Statement, ...]:
     if mechanism.task.turning is Turning.NONE:
         return ()
+    if mechanism.task.turning is Turning.FULL:
+        return is_rotation()
     return (*is_rotation(), *heading_lets(mechanism))
 
 
-def inverse_program(name: str, mechanism: Mechanism, inverse: Inverse, statements: tuple[Statement, ...]) -> Program:
-    """The program of one branch: checks, derivation with its branch signs named, axis values."""
+def inverse_program(
+    name: str, mechanism: Mechanism, inverse: Inverse, statements: tuple[Statement, ...], last: tuple[Statement, ...] = ()
+) -> Program:
+    """The program of one branch: checks, derivation with its branch signs named, `last` what must hold then, axis values."""
     in_plane: tuple[Statement, ...] = ()
     if inverse.closure.plane is not None:
         distance = sp.Abs(real("z") - inverse.closure.plane)
@@ -135,7 +141,7 @@ def inverse_program(name: str, mechanism: Mechanism, inverse: Inverse, statement
         let for j in mechanism.joints if j not in inverse.frozen for let in axis_lets(j) if let.name not in resolved
     )
     outputs = [Output(j.axis.name, j.axis) for j in mechanism.joints]
-    body = (*inverse.naming, *in_plane, *statements, *axes)
+    body = (*inverse.naming, *in_plane, *statements, *last, *axes)
     draft = assemble(name, body, outputs)
     groups = (POSITION, OFFSET, ROTATION_ENTRIES, tuple(j.reference for j in mechanism.joints))
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))

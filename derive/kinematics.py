@@ -59,6 +59,8 @@ class Kinematics:
                      GetAxisProperties reports them), and `check_limits` (0/1).
     forward          axis_* → x y z r11…r33, and `branch_<name>` per branch: the signed margin, positive = byte 1,
                      at most 1e-11 in size = byte 3 (the branches coincide)
+    forward_from     axis_*, start_x … start_z, start_r11 … start_r33 → as forward, which is iterative and starts at a home pose;
+                     None where forward kinematics does not iterate
     orientation      axis_* → r11…r33
     branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*; one branch, periods included, limits not
     limits           axis_* → nothing; its conditions are the axis limits and the limits of coupled quantities
@@ -88,6 +90,7 @@ class Kinematics:
     margins: tuple[Margin, ...]
     freedom: Freedom
     reads_rotation: bool
+    forward_from: Program | None = None
     evidence: Evidence | None = None
 
     @property
@@ -108,7 +111,7 @@ class Kinematics:
     @property
     def chooses_twist(self) -> bool:
         """Whether the mechanism follows a turn of the commanded rotation and projects the rest."""
-        return self.projection is not None
+        return self.projection is not None and self.freedom is not Freedom.THREE
 
     @property
     def limited(self) -> tuple[Limited, ...]:

@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.algebra import cosine, sine
 from derive.problem import Binding, Measure, Slope
-from derive.program import Let, Require, Statement, real
+from derive.program import Let, Statement, real, rewritten
 
 
 class Ledger:
@@ -67,8 +67,8 @@ class Ledger:
     def _write(self, statements: Sequence[Statement], keep: set[sp.Symbol]) -> dict[sp.Symbol, sp.Symbol]:
         names: dict[sp.Symbol, sp.Symbol] = {}
         for statement in statements:
-            if isinstance(statement, Require):
-                self._statements.append(replace(statement, condition=statement.condition.xreplace(names)))
+            if not isinstance(statement, Let):
+                self._statements.append(rewritten(statement, lambda e: e.xreplace(names)))
                 continue
             value = statement.value.xreplace(names)
             shared = self._by_value.get(value)

@@ -7,6 +7,7 @@ Inside expressions angles are in radians; `TURN` is one revolution, for coupling
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import TypedDict, Unpack
@@ -21,6 +22,8 @@ TURN = 2 * sp.pi
 COORDINATE_NAMES = ("x", "y", "z")
 X, Y, Z = (Quantity(real(name)) for name in COORDINATE_NAMES)
 """The commanded position, for closures that are not a chain."""
+ROTATION = sp.ImmutableMatrix(3, 3, [real(f"r{i}{j}") for i in "123" for j in "123"])
+"""The commanded rotation, for closures that follow the whole of it."""
 
 Interval = tuple[float, float]
 
@@ -121,6 +124,7 @@ class Role(Enum):
     PITCH = "pitch"
     GEAR = "gear"
     COUPLING = "coupling"
+    RATIO = "ratio"
     FLAG = "flag"
     SIGN = "sign"
     ANGLE = "angle"
@@ -157,6 +161,53 @@ class Branch:
     indicator: sp.Expr
     names: tuple[str, str]
     signs: tuple[int, int]
+    margin: str
+    """What the singularity is called where its two solutions meet."""
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """The two ways to assemble a closed loop, told apart by the sign of an indicator in joints and position.
+
+    The assembly mode is a parameter of the machine, `<name>_<second>`: forward kinematics gets axes alone.
+    """
+
+    name: str
+    indicator: sp.Expr
+    names: tuple[str, str]
+    signs: tuple[int, int]
+    margin: str
+    handedness: sp.Expr = sp.Integer(1)
+    """Made of parameters: where it is negative (legs numbered the other way round) the indicator's sign is reversed."""
+
+    @property
+    def parameter(self) -> str:
+        """The flag that chooses the second way."""
+        return f"{self.name}_{self.names[1]}"
+
+
+@dataclass(frozen=True)
+class Rod:
+    """A rigid rod of a loop: its end on the base side (moved by joints), its end on the plate, its length."""
+
+    name: str
+    base: tuple[sp.Expr, ...]
+    plate: tuple[sp.Expr, ...]
+    length: sp.Expr
+
+    @property
+    def equation(self) -> sp.Expr:
+        """|plate - base|^2 - length^2."""
+        return sp.Add(*[(p - b) ** 2 for p, b in zip(self.plate, self.base, strict=True)]) - self.length**2
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A quantity of joints and position that must not exceed a size (the swing of a ball joint)."""
+
+    value: sp.Expr
+    largest: sp.Expr
+    meaning: str
 
 
 @dataclass(frozen=True)
@@ -184,6 +235,8 @@ class Turning(Enum):
     """The rotation is fixed or follows from the position: the commanded one is never read."""
     ABOUT_Z = "about z"
     """One turn about the machine's z: the commanded rotation is projected, tool direction first."""
+    FULL = "full"
+    """The whole rotation."""
 
 
 @dataclass(frozen=True)
@@ -208,6 +261,12 @@ class Mechanism:
     parameters: tuple[Parameter, ...] = ()
     chain: Chain | None = None
     closure: tuple[sp.Expr, ...] = ()
+    rods: tuple[Rod, ...] = ()
+    """Closure equations that say that a rod is rigid."""
+    assembly: Assembly | None = None
+    home: tuple[sp.Expr, ...] = ()
+    """Where an iterative forward kinematics starts: x, y, z, then roll, pitch and yaw in radians (Rz Ry Rx)."""
+    bounds: tuple[Bound, ...] = ()
     branches: tuple[Branch, ...] = ()
     positive: tuple[sp.Expr, ...] = ()
     """Quantities whose negative mirror solution the machine does not have."""
@@ -227,6 +286,12 @@ class Mechanism:
     def __post_init__(self) -> None:
         object.__setattr__(self, "positive", tuple(sp.sympify(v) for v in self.positive))
         object.__setattr__(self, "closure", tuple(sp.sympify(v) for v in self.closure))
+        object.__setattr__(self, "home", tuple(sp.sympify(v) for v in self.home))
+
+    @property
+    def equations(self) -> tuple[sp.Expr, ...]:
+        """All stated closure equations."""
+        return (*self.closure, *(rod.equation for rod in self.rods))
 
     @property
     def block_name(self) -> str:
@@ -304,22 +369,72 @@ def coupling(name: str, meaning: str, *, nominal: float) -> Parameter:
     return Parameter(real(name), name, Role.COUPLING, meaning, "1", -1e3, 1e3, False, 0.0, nominal)
 
 
+def angle(
+    name: str, meaning: str, *, nominal: float, low: float = -360.0, high: float = 360.0, default: float | None = None
+) -> Parameter:
+    """An angle of the machine, in degrees; `radians(p)` inside expressions."""
+    return Parameter(real(name), name, Role.ANGLE, meaning, "deg", low, high, False, default, nominal)
+
+
+def coordinate(name: str, meaning: str, *, nominal: float) -> Parameter:
+    """A coordinate of a point, with a sign, that must be given."""
+    return Parameter(real(name), name, Role.DISTANCE, meaning, "u", -1e9, 1e9, False, None, nominal)
+
+
+def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9) -> Parameter:
+    """A length with a sign, zero when not given."""
+    return Parameter(real(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, 0.0, nominal)
+
+
+def radians(parameter: Parameter) -> sp.Expr:
+    """An angle parameter as it stands in sines and cosines."""
+    return parameter * DEGREE
+
+
 def flag(name: str, meaning: str, *, nominal: bool = False) -> Parameter:
     """A choice that is off when not given; 0 or 1 inside expressions."""
-    return Parameter(real(name), name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, float(nominal))
+    symbol = sp.Symbol(name, nonnegative=True)  # its square is itself: see algebra.reduce_units
+    return Parameter(symbol, name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, float(nominal))
 
 
 def sign(name: str, meaning: str, *, nominal: int = 1) -> Parameter:
     """A direction: +1 or -1."""
-    return Parameter(real(name), name, Role.SIGN, meaning, "", -1.0, 1.0, False, 1.0, float(nominal))
+    symbol = sp.Symbol(name, real=True, nonzero=True)  # its square is one
+    return Parameter(symbol, name, Role.SIGN, meaning, "", -1.0, 1.0, False, 1.0, float(nominal))
 
 
-def branch(name: str, indicator: object, **names: int) -> Branch:
+def branch(name: str, indicator: object, *, margin: str | None = None, **names: int) -> Branch:
     """A branch by its indicator: `branch("elbow", sin(A2), right=+1, left=-1)`; the first name is byte 1."""
+    first, second = _two_names(f"branch {name!r}", names)
+    return Branch(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin or name)
+
+
+def assembly(name: str, indicator: object, *, margin: str, handedness: object = 1, **names: int) -> Assembly:
+    """Two assembly modes: `assembly("tcp", Y - KNEE_Y, margin="arms_aligned", below=-1, above=+1)`; the first is the default."""
+    first, second = _two_names(f"assembly {name!r}", names)
+    return Assembly(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin, sp.sympify(handedness))
+
+
+def rod(name: str, base: Sequence[object], plate: Sequence[object], length: object) -> Rod:
+    """A rigid rod between a point that joints move and a point of the plate."""
+    return Rod(name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length))
+
+
+def on_plate(x: object, y: object, z: object) -> tuple[sp.Expr, ...]:
+    """Where a point of the plate is, by its coordinates in the frame of the plate."""
+    return tuple(sp.Matrix([X.symbol, Y.symbol, Z.symbol]) + ROTATION * sp.Matrix([x, y, z]))
+
+
+def bound(value: object, largest: object, meaning: str) -> Bound:
+    """|value| must not exceed `largest`."""
+    return Bound(sp.sympify(value), sp.sympify(largest), meaning)
+
+
+def _two_names(what: str, names: dict[str, int]) -> tuple[tuple[str, int], tuple[str, int]]:
     if len(names) != 2 or sorted(names.values()) != [-1, 1]:
-        raise DescriptionError(f"branch {name!r} needs two names with the signs +1 and -1, not {names}")
-    (first, second), (sign_1, sign_2) = names.keys(), names.values()
-    return Branch(name, sp.sympify(indicator), (first, second), (sign_1, sign_2))
+        raise DescriptionError(f"{what} needs two names with the signs +1 and -1, not {names}")
+    first, second = names.items()
+    return first, second
 
 
 def limited(name: str, value: object, meaning: str, *, angle: bool) -> Limited:

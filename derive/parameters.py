@@ -6,13 +6,14 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from derive.mechanism import Joint, Mechanism, Parameter, Role
+from derive.mechanism import Joint, Mechanism, Parameter, Role, Turning
 from derive.passes import bare
+from derive.platform import MIN_TYPE2_MARGIN as MIN_TYPE2_MARGIN
+from derive.platform import SCALE as SCALE
+from derive.platform import machine_constants, machine_statements
 from derive.program import LARGEST, LIMIT, UNLIMITED, Let, Output, Program, Require, Select, Statement, Status, real
 from derive.verify import verify
 
-SCALE = real("machine_scale")
-"""A length of the machine: the sum of its lengths, or one user's unit where it has none."""
 CHECK_LIMITS = "check_limits"
 
 
@@ -29,10 +30,30 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
         for word in ("lower", "upper"):
             meaning = f"{word} limit of {quantity.meaning}, both 0: no limit"
             parameters.append(_setting(f"{word}_{quantity.name}", meaning, unit, None))
+    parameters += _assembly_parameters(mechanism)
     check = Parameter(
         real(CHECK_LIMITS), CHECK_LIMITS, Role.FLAG, "inverse kinematics tests the limits", "", 0.0, 1.0, False, 1.0, 1.0
     )
     return (*parameters, check)
+
+
+def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
+    """The assembly mode of a closed loop, and how near to losing the plate it may come."""
+    if mechanism.task.turning is Turning.FULL:
+        return [_least_margin()]
+    if mechanism.assembly is None:
+        return []
+    name, chosen = mechanism.assembly.parameter, mechanism.assembly.names[1]
+    meaning = f"assembly mode: {chosen} instead of {mechanism.assembly.names[0]}"
+    return [
+        Parameter(real(name), name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, 0.0),
+        _least_margin(),
+    ]
+
+
+def _least_margin() -> Parameter:
+    meaning = "least distance from a type 2 singularity, a number without a unit; 0: off"
+    return Parameter(real(MIN_TYPE2_MARGIN), MIN_TYPE2_MARGIN, Role.RATIO, meaning, "1", 0.0, 1.0, False, 1e-3, 1e-3)
 
 
 def _number(joint: Joint, word: str, meaning: str, interval: tuple[float, float] | None) -> Parameter:
@@ -60,9 +81,14 @@ def setup_program(mechanism: Mechanism, parameters: tuple[Parameter, ...], hoist
     for quantity in mechanism.limited:
         body += [_ordered(quantity.name), *_limits(quantity.name, ())]
         outputs += _limit_outputs(quantity.name)
-    body.append(Let(SCALE, machine_scale(parameters), "a length of the machine"))
+    if mechanism.task.turning is Turning.FULL:
+        body += machine_statements(mechanism)
+        outputs += [Output(n.name, n) for n in machine_constants(mechanism)]
+    else:
+        body.append(Let(SCALE, machine_scale(parameters), "a length of the machine"))
+        outputs.append(Output(SCALE.name, SCALE))
     body += hoisted
-    outputs += [Output(SCALE.name, SCALE), *(Output(let.name.name, let.name) for let in hoisted)]
+    outputs += [*(Output(let.name.name, let.name) for let in hoisted)]
     inputs = tuple(real(p.name) for p in parameters)
     return verify(Program("setup", inputs, bare(body), tuple(outputs)))
 

@@ -7,12 +7,27 @@ hoist   Let(scale_a2, 2*link_length_1*link_length_2)         →  computed once,
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
 
-from derive.program import DEGREE, Let, Output, Program, Require, Root, Statement, real, symbols_of
+from derive.program import (
+    DEGREE,
+    Iterate,
+    Let,
+    Output,
+    Program,
+    Require,
+    Root,
+    Solve,
+    Statement,
+    binds,
+    reads,
+    real,
+    rewritten,
+    symbols_of,
+)
 from derive.verify import BrokenProgram, verify
 
 
@@ -32,77 +47,107 @@ def with_inputs(program: Program) -> Program:
 
 
 def _bare_expression(value: sp.Basic) -> sp.Expr:
-    """Symbols without assumptions of their own: in a program a name is a name. Pi is 180 degrees, a surd a root."""
-    table = {s: real(s.name) for s in value.free_symbols if s != DEGREE}
-    if any(_is_surd(power) for power in value.atoms(sp.Pow)):
-        value = value.replace(_is_surd, lambda power: Root(power.base))
-    return value.subs(sp.pi, 180 * DEGREE).xreplace(table) if value.has(sp.pi) else value.xreplace(table)
+    """Symbols without assumptions of their own: in a program a name is a name. Pi is 180 degrees, a square root a root."""
+    named = value.xreplace({s: real(s.name) for s in value.free_symbols if s != DEGREE})
+    rooted = named.replace(_is_square_root, lambda power: Root(power.base) ** sp.sign(power.exp))
+    return rooted.subs(sp.pi, 180 * DEGREE) if rooted.has(sp.pi) else rooted
 
 
-def _is_surd(value: sp.Basic) -> bool:
-    return isinstance(value, sp.Pow) and value.is_number and value.exp == sp.Rational(1, 2)
+def _is_square_root(node: sp.Basic) -> bool:
+    return isinstance(node, sp.Pow) and abs(node.exp) == sp.Rational(1, 2)
 
 
 def bare(statements: Iterable[Statement]) -> tuple[Statement, ...]:
     """The statements with plain names: in a program a name is a name, whatever the solver knew of its sign."""
-    plain: list[Statement] = []
-    for s in statements:
-        if isinstance(s, Let):
-            plain.append(replace(s, name=real(s.name.name), value=_bare_expression(s.value)))
-        else:
-            plain.append(replace(s, condition=_bare_expression(s.condition)))
-    return tuple(plain)
+    return tuple(_renamed(rewritten(s, _bare_expression), lambda name: real(name.name)) for s in statements)
+
+
+def _renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Statement:
+    """The statement with the names that it binds changed."""
+    if isinstance(statement, Let):
+        return replace(statement, name=name(statement.name))
+    if isinstance(statement, Solve):
+        determinant = None if statement.determinant is None else name(statement.determinant)
+        return replace(statement, names=tuple(map(name, statement.names)), determinant=determinant)
+    if isinstance(statement, Iterate):
+        step = tuple(s for s in (_renamed(s, name) for s in statement.step) if isinstance(s, Let | Solve))
+        return replace(statement, state=tuple(map(name, statement.state)), step=step)
+    return statement
 
 
 def _fold(
     body: Sequence[Statement], outputs: Sequence[Output]
 ) -> tuple[tuple[Statement, ...], tuple[Output, ...]]:
     aliases: dict[sp.Symbol, sp.Expr] = {}
-    bound: dict[sp.Symbol, sp.Expr] = {}
-    kept: list[Statement] = []
-    for s in body:
-        if isinstance(s, Require):
-            kept.append(replace(s, condition=s.condition.xreplace(aliases)))
-            continue
-        value = s.value.xreplace(aliases)
-        if bound.setdefault(s.name, s.value) != s.value:
-            raise BrokenProgram(f"{s.name} is bound twice, to {bound[s.name]} and to {s.value}")
-        if s.name in aliases or s.name in {k.name for k in kept if isinstance(k, Let)}:
-            continue  # the same Let again
-        if value.is_Symbol or value.is_Number:
-            aliases[s.name] = value
-        else:
-            kept.append(replace(s, value=value))
+    kept = _without_aliases(body, aliases, {}, set())
     return tuple(kept), tuple(replace(o, value=o.value.xreplace(aliases)) for o in outputs)
 
 
-def _order(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[Statement, ...]:
-    lets = {s.name: s for s in body if isinstance(s, Let)}
-    done: dict[sp.Symbol, None] = {}
-    ordered: list[Statement] = []
-
-    def need(value: sp.Basic) -> None:
-        wanted = [s for s in lets if s in symbols_of(value) and s not in done]  # in the order of the derivation
-        for symbol in wanted:
-            if symbol in done:
+def _without_aliases(
+    body: Sequence[Statement],
+    aliases: dict[sp.Symbol, sp.Expr],
+    bound: dict[sp.Symbol, sp.Expr],
+    names: set[sp.Symbol],
+) -> list[Statement]:
+    kept: list[Statement] = []
+    for s in body:
+        if isinstance(s, Let):
+            value = s.value.xreplace(aliases)
+            if bound.setdefault(s.name, s.value) != s.value:
+                raise BrokenProgram(f"{s.name} is bound twice, to {bound[s.name]} and to {s.value}")
+            if s.name in aliases or s.name in names:
+                continue  # the same Let again
+            if value.is_Symbol or value.is_Number:
+                aliases[s.name] = value
                 continue
-            done[symbol] = None
-            need(lets[symbol].value)
-            ordered.append(lets[symbol])
+        if isinstance(s, Iterate):
+            inner = _without_aliases(s.step, aliases, bound, names)
+            s = replace(s, step=tuple(i for i in inner if isinstance(i, Let | Solve)))
+        kept.append(_with_names(s, aliases))
+        names |= set(binds(s))
+    return kept
+
+
+def _order(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[Statement, ...]:
+    ordered = [_with_ordered_step(s) if isinstance(s, Iterate) else s for s in body]
+    return _needed(ordered, [o.value for o in outputs])
+
+
+def _with_ordered_step(loop: Iterate) -> Iterate:
+    step = _needed(loop.step, [loop.done, *loop.following])
+    return replace(loop, step=tuple(s for s in step if isinstance(s, Let | Solve)))
+
+
+def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Statement, ...]:
+    """What the wanted expressions need, each just before its first use; what sets the status is always needed."""
+    sources = {name: s for s in body for name in binds(s)}
+    done: list[Statement] = []
+    begun: set[int] = set()
+
+    def provide(statement: Statement) -> None:
+        if id(statement) in begun:  # also a circle, which the verifier then refuses
+            return
+        begun.add(id(statement))
+        need(reads(statement))
+        done.append(statement)
+
+    def need(symbols: set[sp.Symbol]) -> None:
+        for name, source in sources.items():  # in the order of the derivation
+            if name in symbols:
+                provide(source)
 
     for s in body:
-        if isinstance(s, Require):
-            need(s.condition)
-            ordered.append(s)
-    for o in outputs:
-        need(o.value)
-    return tuple(ordered)
+        if isinstance(s, Require | Iterate):
+            provide(s)
+    for value in wanted:
+        need(symbols_of(value))
+    return tuple(done)
 
 
 def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
     """The programs without the Lets that depend on constants alone, and these Lets, each value under one name."""
     known = set(constants)
-    local = {let.name.name for p in programs for let in p.lets() if not _is_constant(let, p, known)}
+    local = {name.name for p in programs for name in _varying(p, known)}
     by_value: dict[sp.Expr, sp.Symbol] = {}
     hoisted: list[Let] = []
     lowered: list[Program] = []
@@ -110,8 +155,8 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
         names: dict[sp.Symbol, sp.Symbol] = {}
         body: list[Statement] = []
         for s in program.body:
-            if isinstance(s, Require):
-                body.append(replace(s, condition=s.condition.xreplace(names)))
+            if not isinstance(s, Let):
+                body.append(_with_names(s, names))
                 continue
             value = s.value.xreplace(names)
             if not {v.name for v in symbols_of(value)} <= known:
@@ -126,6 +171,16 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
         outputs = tuple(replace(o, value=o.value.xreplace(names)) for o in program.outputs)
         lowered.append(replace(program, body=tuple(body), outputs=outputs))
     return tuple(with_inputs(p) for p in lowered), tuple(hoisted)
+
+
+def _with_names(statement: Statement, names: Mapping[sp.Symbol, sp.Expr]) -> Statement:
+    return rewritten(statement, lambda e: e.xreplace(dict(names)))
+
+
+def _varying(program: Program, constants: set[str]) -> list[sp.Symbol]:
+    """The names that depend on more than constants."""
+    constant = {let.name for let in program.lets() if _is_constant(let, program, constants)}
+    return [name for name in program.bound() if name not in constant]
 
 
 def _is_constant(let: Let, program: Program, constants: set[str]) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import sympy as sp
 
@@ -18,6 +18,8 @@ class Equation:
     label: str
     expression: sp.Expr
     lets: tuple[Let, ...] = ()
+    scales: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """The largest slope by an unknown, where it is made of parameters alone: margins are over it."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,13 @@ class Measure:
     angle: sp.Symbol
     value: sp.Expr
     scale: sp.Expr
+    word: str = "free"
+    """What happens where it vanishes: the angle is "free", or two solutions "meet" of which the machine has one."""
+
+    @property
+    def name(self) -> str:
+        """The name of the margin."""
+        return f"{self.word}_{self.angle.name}"
 
 
 @dataclass(frozen=True)
@@ -104,8 +113,6 @@ class Problem:
     def is_never_zero(self, expression: sp.Expr) -> bool:
         """Whether an expression of known names cannot vanish for any legal machine and pose."""
         reduced = self.reduce(expression)
-        if reduced in self.signs or -reduced in self.signs:
-            return True
         return bool(reduced.is_nonzero)
 
     def with_equations(self, equations: tuple[Equation, ...]) -> Problem:

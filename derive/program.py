@@ -11,8 +11,10 @@ user's length unit. `DEGREE` (pi/180) is the one conversion.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from enum import Enum
+from math import isqrt
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
@@ -37,6 +39,10 @@ SHORTEST_LINK = sp.Float("1e-9")
 """An effective link shorter than this fraction of the machine's scale cannot be aimed."""
 SINGULAR = sp.Float("1e-3")
 """A pose is singular where a margin is smaller than this in size."""
+PIVOT = sp.Float("1e-14")
+"""A matrix is singular where no pivot is larger than this share of its largest entry."""
+CONVERGED = sp.Float("1e-11")
+"""An iteration has converged where what is left of a length is at most this share of the machine's scale."""
 TIE = sp.Float("1e-6")
 """An automatic choice takes a later branch only where its squared distance is smaller by more than this."""
 EDGE = sp.Float("1e-9")
@@ -125,7 +131,51 @@ class Require:
     note: str = ""
 
 
-Statement = Let | Require
+@dataclass(frozen=True)
+class Solve:
+    """Bind `names` to matrix^-1 right, by LU decomposition with partial pivoting. Total: a singular matrix gives zeros.
+
+    All three by rows: the matrix is square, `names` and `right` have as many columns as there are right-hand sides,
+    which may be none where the determinant alone is wanted.
+    """
+
+    names: tuple[sp.Symbol, ...]
+    matrix: tuple[sp.Expr, ...]
+    right: tuple[sp.Expr, ...] = ()
+    determinant: sp.Symbol | None = None
+    note: str = ""
+
+    @property
+    def size(self) -> int:
+        """How many rows the matrix has."""
+        return isqrt(len(self.matrix))
+
+    @property
+    def columns(self) -> int:
+        """How many right-hand sides there are."""
+        return len(self.right) // self.size
+
+
+@dataclass(frozen=True)
+class Iterate:
+    """Repeat `step` from `start` until `done` holds, at most `limit` times; status `otherwise` where it never does.
+
+    Every pass evaluates the step at the state; then it is done, or the state becomes `following`. So the names of the
+    step are bound behind the loop, too: where it was done, they belong to the final state.
+    """
+
+    state: tuple[sp.Symbol, ...]
+    start: tuple[sp.Expr, ...]
+    step: tuple[Let | Solve, ...]
+    following: tuple[sp.Expr, ...]
+    """Each may read its own state and the names of the step, but no other state: the order of assignment is free."""
+    done: Boolean
+    limit: int
+    otherwise: Status
+    note: str = ""
+
+
+Statement = Let | Require | Solve | Iterate
 
 
 @dataclass(frozen=True)
@@ -153,6 +203,10 @@ class Program:
         """The conditions, in order."""
         return tuple(s for s in self.body if isinstance(s, Require))
 
+    def bound(self) -> tuple[sp.Symbol, ...]:
+        """Every name that a statement binds, in order."""
+        return tuple(name for s in self.body for name in binds(s))
+
     def reads(self) -> frozenset[sp.Symbol]:
         """Every free symbol that a statement or an output reads."""
         used: set[sp.Symbol] = set()
@@ -160,7 +214,7 @@ class Program:
             used |= reads(statement)
         for output in self.outputs:
             used |= symbols_of(output.value)
-        return frozenset(used) - {let.name for let in self.lets()}
+        return frozenset(used) - set(self.bound())
 
 
 def real(name: str) -> sp.Symbol:
@@ -173,7 +227,50 @@ def symbols_of(expression: sp.Basic) -> set[sp.Symbol]:
     return {s for s in expression.free_symbols if isinstance(s, sp.Symbol)} - {DEGREE}
 
 
-def reads(statement: Statement) -> set[sp.Symbol]:
-    """The symbols a statement reads."""
-    return symbols_of(statement.value if isinstance(statement, Let) else statement.condition)
+def binds(statement: Statement) -> tuple[sp.Symbol, ...]:
+    """The names a statement binds, in order."""
+    if isinstance(statement, Let):
+        return (statement.name,)
+    if isinstance(statement, Solve):
+        return statement.names + (() if statement.determinant is None else (statement.determinant,))
+    if isinstance(statement, Iterate):
+        return (*statement.state, *(name for s in statement.step for name in binds(s)))
+    return ()
 
+
+def expressions(statement: Statement) -> Iterator[sp.Basic]:
+    """The expressions of a statement, in the order of their evaluation."""
+    if isinstance(statement, Let):
+        yield statement.value
+    elif isinstance(statement, Require):
+        yield statement.condition
+    elif isinstance(statement, Solve):
+        yield from (*statement.matrix, *statement.right)
+    else:
+        yield from statement.start
+        for inner in statement.step:
+            yield from expressions(inner)
+        yield from (statement.done, *statement.following)
+
+
+def reads(statement: Statement) -> set[sp.Symbol]:
+    """The symbols a statement reads and does not bind itself."""
+    found = {s for e in expressions(statement) for s in symbols_of(e)}
+    return found - set(binds(statement)) if isinstance(statement, Iterate) else found
+
+
+def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> Statement:
+    """The statement with every expression changed; the names it binds stay."""
+    if isinstance(statement, Let):
+        return replace(statement, value=change(statement.value))
+    if isinstance(statement, Require):
+        return replace(statement, condition=change(statement.condition))
+    if isinstance(statement, Solve):
+        return replace(statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right)))
+    return replace(
+        statement,
+        start=tuple(map(change, statement.start)),
+        step=tuple(s for s in (rewritten(s, change) for s in statement.step) if isinstance(s, Let | Solve)),
+        following=tuple(map(change, statement.following)),
+        done=change(statement.done),
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import reduce
 
 import numpy as np
@@ -12,13 +12,18 @@ from numpy.typing import NDArray
 from derive.program import (
     DEGREE,
     EDGE,
+    PIVOT,
     Atan2,
+    Iterate,
     Let,
     NearestOnArc,
     NearestPeriod,
     Program,
+    Require,
     Root,
     Select,
+    Solve,
+    Statement,
     Status,
 )
 
@@ -76,11 +81,72 @@ def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array]
     shape = np.broadcast_shapes(*(v.shape for v in known.values())) if known else ()
     status = np.full(shape, Status.OK, dtype=object)
     with np.errstate(all="ignore"):
-        for statement in program.body:
-            if isinstance(statement, Let):
-                known[statement.name.name] = evaluate(statement.value, known)
-            else:
-                fails = np.logical_not(np.broadcast_to(evaluate(statement.condition, known), shape))
-                status[fails & (status == Status.OK)] = statement.otherwise
+        _execute(program.body, known, status)
         outputs = {o.name: np.broadcast_to(evaluate(o.value, known), shape) for o in program.outputs}
     return outputs, status
+
+
+def _execute(statements: Iterable[Statement], known: dict[str, Array], status: NDArray[np.object_]) -> None:
+    for statement in statements:
+        if isinstance(statement, Let):
+            known[statement.name.name] = evaluate(statement.value, known)
+        elif isinstance(statement, Require):
+            _require(evaluate(statement.condition, known), statement.otherwise, status)
+        elif isinstance(statement, Solve):
+            _solve(statement, known, status.shape)
+        else:
+            _iterate(statement, known, status)
+
+
+def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -> None:
+    fails = np.logical_not(np.broadcast_to(condition, status.shape))
+    status[fails & (status == Status.OK)] = otherwise
+
+
+def _iterate(loop: Iterate, known: dict[str, Array], status: NDArray[np.object_]) -> None:
+    """Rows that are done keep their state, and so every name of the step, while the others go on."""
+    known.update({name.name: evaluate(value, known) for name, value in zip(loop.state, loop.start, strict=True)})
+    done = np.zeros(status.shape, dtype=bool)
+    for _ in range(loop.limit):
+        _execute(loop.step, known, status)
+        done = np.broadcast_to(evaluate(loop.done, known), status.shape)
+        if np.all(done | (status != Status.OK)):
+            break
+        following = [evaluate(value, known) for value in loop.following]
+        known.update({n.name: np.where(done, known[n.name], v) for n, v in zip(loop.state, following, strict=True)})
+    _require(done, loop.otherwise, status)
+
+
+def _solve(system: Solve, known: dict[str, Array], shape: tuple[int, ...]) -> None:
+    matrix, right = (
+        np.array([np.broadcast_to(evaluate(e, known), shape) for e in entries], dtype=float).reshape(system.size, -1, *shape)
+        for entries in (system.matrix, system.right)
+    )
+    determinant, solution = solve(matrix, right)
+    known.update(zip((n.name for n in system.names), solution.reshape(-1, *shape), strict=True))
+    if system.determinant is not None:
+        known[system.determinant.name] = determinant
+
+
+def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
+    """Determinant and solution by LU decomposition with partial pivoting: rows, columns, then any shape. Singular: zeros."""
+    matrix, right, size = matrix.copy(), right.copy(), len(matrix)
+    tiny = float(PIVOT) * np.max(np.abs(matrix), axis=(0, 1))
+    determinant, regular = np.ones(matrix.shape[2:]), np.ones(matrix.shape[2:], dtype=bool)
+    for k in range(size):
+        best = k + np.argmax(np.abs(matrix[k:, k]), axis=0)
+        for table in (matrix, right):
+            table[k], lifted = np.take_along_axis(table, best[None, None], axis=0)[0], table[k].copy()
+            np.put_along_axis(table, np.broadcast_to(best[None, None], (1, *lifted.shape)), lifted[None], axis=0)
+        determinant = np.where(best == k, determinant, -determinant) * matrix[k, k]
+        regular &= np.abs(matrix[k, k]) > tiny
+        divisor = np.where(regular, matrix[k, k], 1.0)
+        for i in range(k + 1, size):
+            factor = matrix[i, k] / divisor
+            matrix[i, k + 1 :] -= factor * matrix[k, k + 1 :]
+            right[i] -= factor * right[k]
+    for k in reversed(range(size)):
+        for i in range(k + 1, size):
+            right[k] -= matrix[k, i] * right[i]
+        right[k] /= np.where(regular, matrix[k, k], 1.0)
+    return np.where(regular, determinant, 0.0), np.where(regular, right, 0.0)

@@ -10,19 +10,22 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.consequences import differences, squares
+from derive.consequences import differences, eliminations, squares
 from derive.ledger import Ledger
 from derive.parallel import Sum, candidate_sums, resolve, substitute
 from derive.problem import Binding, Equation, Measure, Problem, Slope
 from derive.program import Statement
 from derive.subproblems.affine import affine
+from derive.subproblems.affine_pair import affine_pair
 from derive.subproblems.pair import pair
 from derive.subproblems.polar import polar
+from derive.subproblems.quadratic import quadratic
+from derive.subproblems.spheres import spheres
 from derive.subproblems.trigonometric import trigonometric
 
 Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
-RULES: tuple[Rule, ...] = (affine, pair, polar, trigonometric)
-TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (lambda p: p.equations, differences, squares)
+RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)
+TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (lambda p: p.equations, differences, eliminations, squares)
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 
 
@@ -60,7 +63,6 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
             if angle not in problem.lengths:
                 ledger.append(resolve_angle(angle))
         problem = _without(problem, binding, ledger)
-    _refuse_contradictions(problem)
     return Derivation(ledger.statements, ledger.slopes, ledger.measures, tuple(rules), sums)
 
 
@@ -105,11 +107,6 @@ def _without(problem: Problem, binding: Binding, ledger: Ledger) -> Problem:
     )
     equations = tuple(e for e in (*problem.equations, *binding.new_equations) if rest.unknowns_of(e.expression))
     return rest.with_equations(equations)
-
-
-def _refuse_contradictions(problem: Problem) -> None:
-    if problem.equations:
-        raise Unsolved(_message(problem))
 
 
 def _message(problem: Problem) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 
 import sympy as sp
 
-from derive.mechanism import DescriptionError, Interval, Joint, Mechanism, Parameter, X, Y, Z
+from derive.mechanism import ROTATION, DescriptionError, Interval, Joint, Mechanism, Parameter, Turning, X, Y, Z
 from derive.program import DEGREE
 
 _BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
@@ -111,7 +111,7 @@ def _periods(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _shape(mechanism: Mechanism) -> Iterator[str]:
-    if (mechanism.chain is None) == (not mechanism.closure):
+    if (mechanism.chain is None) == (not mechanism.equations):
         yield "the mechanism needs either a chain or closure equations"
     if mechanism.task.position not in ("xy", "xyz"):
         yield f"the task commands {mechanism.task.position!r}: it must be 'xy' or 'xyz'"
@@ -124,7 +124,7 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
 def _equations(mechanism: Mechanism) -> Expressions:
     if mechanism.chain is not None:
         return tuple(("chain", factor.amount) for factor in mechanism.chain.factors)
-    return tuple(("closure", sp.sympify(equation)) for equation in mechanism.closure)
+    return tuple(("closure", sp.sympify(equation)) for equation in mechanism.equations)
 
 
 def _symbols(mechanism: Mechanism) -> Iterator[str]:
@@ -132,6 +132,8 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
     known = joints | _parameters(mechanism)
     if mechanism.chain is None:
         known |= {quantity.symbol for quantity in (X, Y, Z)}
+    if mechanism.task.turning is Turning.FULL:
+        known |= set(ROTATION)
     named = [
         *_equations(mechanism),
         *((f"branch {b.name!r}", b.indicator) for b in mechanism.branches),
@@ -149,10 +151,10 @@ def _constraints(mechanism: Mechanism) -> Iterator[str]:
     nominal = {p.name: p.nominal for p in mechanism.parameters}
     names = {p.name for p in mechanism.parameters}
     for constraint in mechanism.constraints:
-        strange = sorted(s.name for s in constraint.condition.free_symbols if s.name not in names)
+        strange = sorted(s.name for s in constraint.condition.free_symbols - {DEGREE} if s.name not in names)
         if strange:
             yield f"constraint {constraint.message!r} reads {strange[0]!r}, which is no parameter of this mechanism"
-        values = {s: nominal.get(s.name, 0.0) for s in constraint.condition.free_symbols}
+        values = {s: nominal.get(s.name, 0.0) for s in constraint.condition.free_symbols} | {DEGREE: sp.pi / 180}
         if constraint.condition.subs(values) != sp.true:
             yield f"the nominal parameters break the constraint {constraint.message!r}"
 

@@ -6,7 +6,7 @@ import re
 
 import sympy as sp
 
-from derive.program import DEGREE, PRIMITIVES, Let, Program
+from derive.program import DEGREE, PRIMITIVES, Iterate, Program, Solve, Statement, binds, expressions, symbols_of
 
 _PORTABLE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _ARITHMETIC = (sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Rational, sp.Float, sp.Integer)
@@ -21,16 +21,42 @@ def verify(program: Program) -> Program:
     """Return the program, or raise `BrokenProgram`: unbound or repeated name, unportable name, unknown primitive."""
     bound = {s.name for s in program.inputs} | {DEGREE.name}
     spelled: dict[str, str] = {}
-    for name in [s.name for s in program.inputs] + [let.name.name for let in program.lets()]:
+    for name in [s.name for s in program.inputs] + [name.name for name in program.bound()]:
         _check_name(program, name, spelled)
     for statement in program.body:
-        value = statement.value if isinstance(statement, Let) else statement.condition
-        _check_expression(program, value, bound)
-        if isinstance(statement, Let):
-            bound.add(statement.name.name)
+        _check_statement(program, statement, bound)
     for output in program.outputs:
         _check_expression(program, output.value, bound)
     return program
+
+
+def _check_statement(program: Program, statement: Statement, bound: set[str]) -> None:
+    """Check what a statement reads, and add what it binds."""
+    if isinstance(statement, Iterate):
+        _check_loop(program, statement, bound)
+        return
+    if isinstance(statement, Solve):
+        sizes = statement.size**2, statement.size * statement.columns, len(statement.right)
+        if sizes != (len(statement.matrix), len(statement.right), len(statement.names)):
+            raise BrokenProgram(f"{program.name}: the matrix, the right-hand sides and the names do not fit together")
+    for value in expressions(statement):
+        _check_expression(program, value, bound)
+    bound |= {name.name for name in binds(statement)}
+
+
+def _check_loop(program: Program, loop: Iterate, bound: set[str]) -> None:
+    if not len(loop.state) == len(loop.start) == len(loop.following) or loop.limit < 1:
+        raise BrokenProgram(f"{program.name}: state, start and following of a loop must be as many, its limit at least 1")
+    for value in loop.start:
+        _check_expression(program, value, bound)
+    bound |= {name.name for name in loop.state}
+    for inner in loop.step:
+        _check_statement(program, inner, bound)
+    for value in (loop.done, *loop.following):
+        _check_expression(program, value, bound)
+    for own, value in zip(loop.state, loop.following, strict=True):
+        if others := sorted(s.name for s in symbols_of(value) if s in loop.state and s != own):
+            raise BrokenProgram(f"{program.name}: what follows {own} reads {others[0]!r}, which may have been assigned before")
 
 
 def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:

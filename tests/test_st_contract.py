@@ -88,8 +88,10 @@ def test_the_newest_interfaces_that_fit(file: str) -> None:
     assert {"ISMKinematicWithInfo2", "ISMKinematicWithInitialization"} <= set(names)
     assert ("ISMKinematicWithConfigurations4" in names) == has_configuration
     assert f"{block.name}_ReadConfig" in library().objects or not has_configuration
+    is_full = "GetOrientationImage" not in {m.name for m in block.methods}
     offset = "ISMPositionKinematics_Offset2" if has_configuration else "ISMPositionKinematics_Offset"
-    assert sum(name in ("ISMPositionKinematics2", offset) for name in names) == 1
+    assert sum(name in ("ISMPositionKinematics2", offset) for name in names) == (0 if is_full else 1)
+    assert not is_full or "ISMKinematicsWithOrientationImage2" in names
     assert "ISMKinPeriodHandling" not in names or has_configuration
     assert not any("WithOriImage" in name for name in names)
 
@@ -129,7 +131,7 @@ def test_layout(file: str) -> None:
 def test_names_of_objects_are_unique_ignoring_case() -> None:
     names = [name.lower() for name in library().objects]
     assert len(names) == len(set(names))
-    assert all(name.startswith(("softkin_", "kin_")) for name in names)
+    assert all(name.startswith(("softkin_", "kin_", "mc_kin_")) for name in names)
 
 
 @pytest.mark.parametrize("file", UNITS)

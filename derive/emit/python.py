@@ -11,11 +11,11 @@ from derive.emit import python_entries as entries
 from derive.emit import python_setup as setup
 from derive.emit.language import GENERATED, environment
 from derive.emit.python_layout import WIDTH, fold
-from derive.emit.python_methods import branch, forward, limits, methods
+from derive.emit.python_methods import branch, forwards, limits, methods
 from derive.emit.python_printer import ARRAY_NAMES, literal
-from derive.emit.python_program import Method, array_body, functions, scalar_body
+from derive.emit.python_program import Method, array_body, functions, has_loop, scalar_body
 from derive.kinematics import Kinematics
-from derive.program import EDGE, FREE_ANGLE, LARGEST, SINGULAR, TIE, Status
+from derive.program import EDGE, FREE_ANGLE, LARGEST, PIVOT, SINGULAR, TIE, Status
 
 name = "python"
 
@@ -29,6 +29,7 @@ _FIXED = (
     "softkin/_input.py",
     "softkin/_offset.py",
     "softkin/_scalar.py",
+    "softkin/_start.py",
     "softkin/_table.py",
     "softkin/_twist.py",
     "softkin/_types.py",
@@ -41,7 +42,7 @@ _EXPORTS = (
     "Axis", "ConfigurationByte", "Frame", "KinematicsError", "Mechanism", "OrientationImage", "Parameter",
     "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
-_ARRAY_TYPES = ("Codes", "Programs", "Reals", "Rotation", "Vector", "passed", "require")
+_ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Vector", "passed", "require")
 _CHUNK = 8192
 """Rows of a batch at a time: 64 KiB an array."""
 _MEANINGS = {
@@ -77,6 +78,7 @@ def _templates() -> Environment:
         "edge": literal(float(EDGE)),
         "free_angle": literal(float(FREE_ANGLE)),
         "largest": literal(float(LARGEST)),
+        "pivot": literal(float(PIVOT)),
         "singular": literal(float(SINGULAR)),
         "tie": literal(float(TIE)),
     }
@@ -97,7 +99,9 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     """The class of a mechanism, and its programs on arrays."""
     names = _index(kin)
     scalar = methods(kin)
-    arrays = [forward(kin), branch(kin), limits(kin)]
+    arrays = [*forwards(kin), branch(kin), limits(kin)]
+    array_programs = "Programs" if kin.forward_from is None else "StartedPrograms"
+    array_types = _ARRAY_TYPES + (("advanced", "initial", "settled") if any(has_loop(m.program) for m in arrays) else ())
     programs = tuple(m.program for m in scalar) + (kin.setup,)
     context = {
         **names,
@@ -105,6 +109,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "mechanism": kin.mechanism,
         "entries": entries,
         "setup": setup,
+        "array_programs": array_programs,
         "bases": _bases(kin),
         "types": _types(kin, scalar),
         "primitives": _without(functions(programs), "abs", "select"),
@@ -113,7 +118,8 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     }
     array_context = {
         **names,
-        "imports": _sorted({*_ARRAY_TYPES, *(ARRAY_NAMES.get(f, f) for f in functions(tuple(m.program for m in arrays)))}),
+        "array_programs": array_programs,
+        "imports": _sorted({array_programs, *array_types, *_array_functions(arrays)}),
         "methods": [{"head": _array_head(m), "summary": m.summary, "body": array_body(m)} for m in arrays],
     }
     return {
@@ -122,10 +128,15 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     }
 
 
+def _array_functions(arrays: Sequence[Method]) -> set[str]:
+    return {ARRAY_NAMES.get(f, f) for f in functions(tuple(m.program for m in arrays))}
+
+
 def _bases(kin: Kinematics) -> dict[str, str]:
     """The base classes by the module they are in: what the mechanism offers beyond the calls that all have."""
     found = {"_offset": "OffsetKinematics"} if kin.offset_branch is not None else {}
-    found |= {"_twist": "TwistChoice"} if kin.projection is not None else {}
+    found |= {"_start": "IterativeForward"} if kin.forward_from is not None else {}
+    found |= {"_twist": "TwistChoice"} if kin.chooses_twist else {}
     return found or {"_core": "Mechanism"}
 
 

@@ -33,6 +33,11 @@ def fold(line: str, indent: int = 0) -> list[str]:
     return [*lines, " " * indent + line[closing:]]
 
 
+def packed(pieces: list[str]) -> list[str]:
+    """Short pieces together on lines of the usual width."""
+    return _packed(pieces, WIDTH - 8)
+
+
 def _packed(pieces: list[str], width: int) -> list[str]:
     """Short pieces together on a line; the arms of a choice and the rows of a matrix stay apart."""
     if any(piece.startswith(("if ", "((", "(-", "(0", "(1")) or piece.endswith("),") for piece in pieces):

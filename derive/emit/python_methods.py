@@ -23,7 +23,7 @@ def methods(kin: Kinematics) -> list[Method]:
     rows = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i, _ in enumerate(kin.rows, 1))
     margins = tuple(m.name for m in kin.margins)
     found = [
-        forward(kin),
+        *forwards(kin),
         Method("orientation", "The rotation of the frame.", kin.orientation, (axes,), "Rotation", ROTATION),
         branch(kin),
         limits(kin),
@@ -32,7 +32,7 @@ def methods(kin: Kinematics) -> list[Method]:
         Method("image", "The orientations of the flange.", kin.image, (), "Image", IMAGE),
     ]
     rotation = Argument("rotation", "Rotation", ROTATION)
-    if kin.projection is not None:
+    if kin.projection is not None and kin.chooses_twist:
         text = "The nearest rotation that the flange can have."
         found.append(Method("projection", text, kin.projection, (rotation,), "Rotation", ROTATION))
     offset = Argument("offset", "Vector", OFFSET)
@@ -51,6 +51,19 @@ def forward(kin: Kinematics) -> Method:
     result = (POSITION, ROTATION, _measures(kin))
     text = "Position, rotation and the signed margin of every branch."
     return Method("forward", text, kin.forward, (_axes(kin),), "Pose", result)
+
+
+def forwards(kin: Kinematics) -> list[Method]:
+    """Forward kinematics, and from a given start where it iterates."""
+    if kin.forward_from is None:
+        return [forward(kin)]
+    start = (
+        Argument("start_position", "Vector", tuple(f"start_{c}" for c in "xyz")),
+        Argument("start_rotation", "Rotation", tuple(tuple(f"start_r{row}{column}" for column in "123") for row in "123")),
+    )
+    text = "The same, found from a given start."
+    result = (POSITION, ROTATION, _measures(kin))
+    return [forward(kin), Method("forward_from", text, kin.forward_from, (_axes(kin), *start), "Pose", result)]
 
 
 def branch(kin: Kinematics) -> Method:

@@ -11,8 +11,9 @@ from sympy.core.relational import Relational
 
 from derive.emit.expression import FUNCTION_KEYS
 from derive.emit.python_layout import WIDTH, fold
+from derive.emit.python_loops import array_end, array_head, scalar_end, scalar_head, solve_lines
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, spelled
-from derive.program import DEGREE, Let, Program, Require, Select, Statement
+from derive.program import DEGREE, Iterate, Let, Program, Require, Select, Solve, Statement, expressions
 
 Shape = str | tuple["Shape", ...]
 """Names, nested as the tuples of the method's arguments and results are."""
@@ -47,11 +48,14 @@ def scalar_body(method: Method) -> list[str]:
     """The body on plain numbers: the first condition that does not hold returns its status."""
     lines = [*_unpacked(method), *_constants(method, "self._constants")]
     for statement, same in _grouped(method.program.body):
-        if isinstance(statement, Let):
-            lines += let_lines(statement, _SCALAR)
-            continue
-        lines += [*_note(statement.note), *fold(f"if not ({conjunction(r.condition for r in same)}):")]
-        lines.append(f"    return Status.{statement.otherwise.name}")
+        if isinstance(statement, Iterate):
+            lines += [*scalar_head(statement, _SCALAR), *_step(statement, _SCALAR)]
+            lines += scalar_end(statement, conjunction([statement.done]), _SCALAR)
+        elif isinstance(statement, Require):
+            lines += [*_note(statement.note), *fold(f"if not ({conjunction(r.condition for r in same)}):")]
+            lines.append(f"    return Status.{statement.otherwise.name}")
+        else:
+            lines += binding_lines(statement, _SCALAR)
     return [*lines, *fold(f"return {_values(method, _SCALAR) or 'Status.OK'}")]
 
 
@@ -60,12 +64,14 @@ def array_body(method: Method) -> list[str]:
     lines = [*_unpacked(method), *_constants(method, "self.constants")]
     lines.append(f"status = passed({method.arguments[0].name})")
     for statement, same in _grouped(method.program.body):
-        if isinstance(statement, Let):
-            lines += let_lines(statement, _ARRAY)
-            continue
-        lines += _note(statement.note)
-        for condition in (r.condition for r in same):
-            lines += fold(f"require(status, {_ARRAY.print(condition)}, Status.{statement.otherwise.name})")
+        if isinstance(statement, Iterate):
+            lines += [*array_head(statement, _ARRAY), *_step(statement, _ARRAY), *array_end(statement, _ARRAY)]
+        elif isinstance(statement, Require):
+            lines += _note(statement.note)
+            for condition in (r.condition for r in same):
+                lines += fold(f"require(status, {_ARRAY.print(condition)}, Status.{statement.otherwise.name})")
+        else:
+            lines += binding_lines(statement, _ARRAY)
     values = _values(method, _ARRAY)
     return [*lines, *fold(f"return {values}, status" if values else "return status")]
 
@@ -74,11 +80,33 @@ def functions(programs: tuple[Program, ...]) -> list[str]:
     """The primitives and constants that programs use, by their neutral names, in alphabetical order."""
     found = set()
     for program in programs:
-        values = [s.value if isinstance(s, Let) else s.condition for s in program.body] + [o.value for o in program.outputs]
+        values = [e for s in program.body for e in expressions(s)] + [o.value for o in program.outputs]
+        found |= {"solve"} if has_system(program) else set()
         for node in (n for v in values for n in sp.preorder_traversal(v)):
             found |= {FUNCTION_KEYS[type(node)]} if type(node) in FUNCTION_KEYS else set()
             found |= {DEGREE.name} if node == DEGREE else set()
     return sorted(found)
+
+
+def has_loop(program: Program) -> bool:
+    """Whether a program iterates."""
+    return any(isinstance(s, Iterate) for s in program.body)
+
+
+def has_system(program: Program) -> bool:
+    """Whether a program solves linear equations."""
+    inner = (i for s in program.body for i in (s.step if isinstance(s, Iterate) else (s,)))
+    return any(isinstance(s, Solve) for s in inner)
+
+
+def binding_lines(statement: Let | Solve, printer: ScalarPrinter) -> list[str]:
+    """A statement that binds names and refuses nothing."""
+    return let_lines(statement, printer) if isinstance(statement, Let) else solve_lines(statement, printer)
+
+
+def _step(loop: Iterate, printer: ScalarPrinter) -> list[str]:
+    """The step of a loop: let lines are folded as if they were not indented, so they are a little longer."""
+    return [f"    {line}" for s in loop.step for line in binding_lines(s, printer)]
 
 
 def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
@@ -109,7 +137,7 @@ def _grouped(body: tuple[Statement, ...]) -> Iterator[tuple[Statement, tuple[Req
 
     def key(indexed: tuple[int, Statement]) -> tuple[object, ...]:
         index, statement = indexed
-        return (index,) if isinstance(statement, Let) else (statement.otherwise.name, statement.note)
+        return (statement.otherwise.name, statement.note) if isinstance(statement, Require) else (index,)
 
     for _, group in groupby(enumerate(body), key):
         statements = [statement for _, statement in group]

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from derive.emit.python_layout import fold
 from derive.emit.python_printer import ScalarPrinter, spelled
-from derive.emit.python_program import conjunction, let_lines
+from derive.emit.python_program import binding_lines, conjunction
 from derive.kinematics import Kinematics
 from derive.mechanism import Parameter, Role
-from derive.program import Let, Require
+from derive.program import Iterate, Require
 
 _PRINTER = ScalarPrinter()
 _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
@@ -34,7 +34,9 @@ def setup_body(kin: Kinematics) -> list[str]:
     inputs = [s.name for s in kin.setup.inputs]
     lines: list[str] = []
     for statement in kin.setup.body:
-        lines += let_lines(statement, _PRINTER) if isinstance(statement, Let) else _refusal(statement, inputs)
+        if isinstance(statement, Iterate):
+            raise NotImplementedError("a setup that iterates")
+        lines += _refusal(statement, inputs) if isinstance(statement, Require) else binding_lines(statement, _PRINTER)
     values = (f"{spelled(o.name)}={_PRINTER.print(o.value)}" for o in kin.setup.outputs)
     return [*lines, *fold(f"return Constants({', '.join(values)})")]
 

@@ -10,7 +10,7 @@ from derive.emit.st_expression import literal
 from derive.emit.st_inputs import Input, parameter_input
 from derive.emit.st_names import capitalized, stored_name
 from derive.emit.st_program import Printed
-from derive.kinematics import Kinematics
+from derive.kinematics import Freedom, Kinematics
 from derive.mechanism import Joint, Kind
 from derive.program import SINGULAR, Program
 
@@ -184,10 +184,12 @@ def _interfaces(kinematics: Kinematics, contract: Contract) -> tuple[str, ...]:
         wanted.append("ISMKinematicWithConfigurations4")
     if kinematics.period_joints:
         wanted.append("ISMKinPeriodHandling")
-    if kinematics.offset_branch is None:
+    if kinematics.freedom is Freedom.THREE:
+        pass  # a full kinematics: no orientation kinematics is put behind it
+    elif kinematics.offset_branch is None:
         wanted.append("ISMPositionKinematics2")
     else:
         wanted.append("ISMPositionKinematics_Offset2" if has_configuration else "ISMPositionKinematics_Offset")
-    if kinematics.chooses_twist:
+    if kinematics.projection is not None:
         wanted.append("ISMKinematicsWithOrientationImage2")
     return tuple(name for name in map(contract.available, wanted) if name is not None)

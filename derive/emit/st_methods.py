@@ -81,7 +81,10 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
         "Jacobian": kinematics.jacobian,
     }
     solved = {"CartesianToAxes": kinematics.branch, "CartesianToAxes_Offset": kinematics.offset_branch}
-    for name in _names(block, contract):
+    names = _names(block, contract)
+    if "GetOrientationImage" not in names:
+        programs["GetFlangeOrientationImageTotal"] = kinematics.image
+    for name in names:
         program = solved.get(name)
         if program is None:
             yield _Source(known[name], programs.get(name))

@@ -10,8 +10,9 @@ import sympy as sp
 
 from derive.emit.st_expression import StructuredText, is_size_test
 from derive.emit.st_layout import commented, conjunction, indented, wrapped
+from derive.emit.st_loops import LOCALS, declarations, loop_lines, solve_lines
 from derive.emit.st_names import respelled, spellings
-from derive.program import DEGREE, Let, Program, Require, Select, Status
+from derive.program import DEGREE, Iterate, Let, Program, Require, Select, Solve, Statement, Status
 
 Refusal = Callable[[Status], Sequence[str]]
 """What a method does where a condition does not hold: the statements up to and with RETURN."""
@@ -26,6 +27,8 @@ class Printed:
 
     variables: tuple[str, ...]
     """Its temporaries, all LREAL."""
+    declarations: tuple[str, ...]
+    """Further variables, with their types."""
     body: str
     outputs: Mapping[str, str]
     """The expression of every output, by its neutral name."""
@@ -39,38 +42,50 @@ def printed(
     `given` spells what it reads, `stored` those of its bindings that are instance variables; the others are
     temporaries, and have none of the names in `taken`.
     """
-    names = (let.name.name for let in program.lets() if let.name.name not in stored)
-    temporaries = spellings(names, taken)
+    names = (name.name for name in program.bound() if name.name not in stored)
+    temporaries = spellings(names, (*taken, *LOCALS))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
     return Printed(
         variables=tuple(temporaries.values()),
-        body="\n".join(_body(program, printer, refusal)),
+        declarations=declarations(program.body),
+        body="\n".join(_body(program.body, printer, refusal)),
         outputs={o.name: printer.print(o.value) for o in program.outputs},
     )
 
 
-def _body(program: Program, printer: StructuredText, refusal: Refusal) -> Iterator[str]:
-    for kind, group in groupby(program.body, key=lambda s: _kind(s, printer)):
+def _body(body: Sequence[Statement], printer: StructuredText, refusal: Refusal) -> Iterator[str]:
+    for kind, group in groupby(body, key=lambda s: _kind(s, printer)):
         statements = list(group)
+        first = statements[0]
+        if isinstance(first, Solve):
+            yield from commented([*solve_lines(first, printer), ""], respelled(first.note, printer.names))
+            continue
+        if isinstance(first, Iterate):
+            step = list(_body(first.step, printer, refusal))
+            lines = list(loop_lines(first, step, printer, refusal(first.otherwise)))
+            yield from ("", *commented(lines, respelled(first.note, printer.names)), "")
+            continue
         lets = [s for s in statements if isinstance(s, Let)]
-        conditions = [s.condition for s in statements if isinstance(s, Require)]
-        if isinstance(kind[0], Status):
-            yield from commented(_require(conditions, printer, refusal(kind[0])), respelled(statements[0].note, printer.names))
+        if isinstance(first, Require):
+            conditions = [s.condition for s in statements if isinstance(s, Require)]
+            yield from commented(_require(conditions, printer, refusal(first.otherwise)), respelled(first.note, printer.names))
         elif isinstance(kind[0], str):
             yield from commented(_choice(kind[0], lets, printer), _notes(lets, printer.names))
         else:
             yield from _assignments(lets, printer)
 
 
-Kind = tuple[Status | str | None, str, bool]
+Kind = tuple[Status | str | None, object, bool]
 
 
-def _kind(statement: Let | Require, printer: StructuredText) -> Kind:
+def _kind(statement: Statement, printer: StructuredText) -> Kind:
     """What statements in a row have in common that are printed together.
 
     Conditions that refuse alike are one condition. Those on the size of inputs stay apart: AND evaluates both
     sides, and what follows them is defined only where they hold. Selections by one condition are one IF.
     """
+    if isinstance(statement, Solve | Iterate):
+        return None, statement, False
     if isinstance(statement, Require):
         return statement.otherwise, statement.note, all(map(is_size_test, sp.And.make_args(statement.condition)))
     if isinstance(statement.value, Select):

@@ -70,7 +70,8 @@ def _amplitude(
     if along.is_Symbol:
         right = sp.expand(e.subs(along**2, divisor**2 - across**2))
     return _Amplitude(
-        naming, common * divisor, guard, along / divisor, across / divisor, right, slope, common * problem.scale
+        naming, common * divisor, guard, along / divisor, across / divisor, right, slope,
+        equation.scales.get(angle, common * problem.scale),
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.kinematics import Kinematics
+from derive.mechanism import Turning
 from derive.program import Program, Status
 from derive.run import Array, run
 from derive.witness.closure import POSE, Closure
@@ -51,6 +52,8 @@ def displacement(closure: Closure, samples: Samples, joints: Array) -> Array:
 def check_forward(kin: Kinematics, closure: Closure, samples: Samples) -> float:
     """Forward kinematics closes Φ and gives the whole frame; `orientation` gives the same rotation."""
     frame = closure.frame(samples.joints, samples.parameters)[:, :, 0]
+    if kin.mechanism.task.turning is Turning.FULL:  # the closure speaks of the whole pose: any rotation may be right
+        frame[:, 3:] = _nearest_rotations(samples.pose[:, 3:])
     position = (samples.pose[:, :3] - frame[:, :3]) / samples.reach[:, None]
     if kin.mechanism.chain is None:  # closure equations speak of the commanded position: `displacement` measures it
         position[:, : len(kin.mechanism.task.position)] = 0.0
@@ -63,6 +66,11 @@ def check_forward(kin: Kinematics, closure: Closure, samples: Samples) -> float:
         np.max(np.abs(rotation - frame[:, 3:]), axis=1),
     )
     return worst(kin, "forward kinematics", np.max(parts, axis=0), samples, CLOSURE_TOLERANCE)
+
+
+def _nearest_rotations(rows: Array) -> Array:
+    left, _, right = np.linalg.svd(rows.reshape(-1, 3, 3))
+    return np.asarray((left @ right).reshape(-1, 9))
 
 
 def check_jacobian(kin: Kinematics, closure: Closure, samples: Samples) -> float:

@@ -15,11 +15,13 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.frames import Chain, Motion
-from derive.mechanism import Mechanism, Turning, X, Y, Z
-from derive.program import DEGREE
+from derive.mechanism import ROTATION, Mechanism, Turning, X, Y, Z
+from derive.program import DEGREE, real
 from derive.run import Array
 from derive.witness.terms import Term, term
 
+LEAST_MARGIN = 1e-6
+"""A closed loop nearer to a type 2 singularity is not counted as a solution."""
 POSE = ("x", "y", "z", *(f"r{i}{j}" for i in "123" for j in "123"))
 """The columns of a pose: position, then rotation by rows."""
 
@@ -87,6 +89,7 @@ def closure_of(mechanism: Mechanism) -> Closure:
     count = len(mechanism.joints)
     q, axes, pose = ca.SX.sym("q", count), ca.SX.sym("axes", count), ca.SX.sym("pose", len(POSE))
     constants = [p.symbol for p in mechanism.parameters] + [j.offset for j in mechanism.joints]
+    constants += [real(mechanism.assembly.parameter)] if mechanism.assembly else []
     p = ca.SX.sym("p", len(constants))
     known = {symbol: p[i] for i, symbol in enumerate(constants)}
     known |= {joint.symbol: q[i] for i, joint in enumerate(mechanism.joints)}
@@ -106,7 +109,7 @@ def closure_of(mechanism: Mechanism) -> Closure:
         by_pose=Rows("by_pose", state, at_rest[1]),
         by_joints=Rows("by_joints", state, ca.jacobian(at_rest[0], q)),
         frame=Rows("frame", (q, p), _frame(mechanism.chain, known)),
-        positive=Rows("positive", state, _column([term(sp.sympify(e), named) for e in mechanism.positive])),
+        positive=Rows("positive", state, _column([term(sp.sympify(e), named) for e in _positive(mechanism)])),
         indicators=Rows("indicators", state, _column([b.signs[0] * term(b.indicator, named) for b in mechanism.branches])),
         equations=equations,
         task=task,
@@ -117,7 +120,18 @@ def closure_of(mechanism: Mechanism) -> Closure:
 
 def task_rows(mechanism: Mechanism) -> tuple[str, ...]:
     """The commanded directions: what the rows of the Jacobian must be."""
-    return (*mechanism.task.position, *(("turn z",) if mechanism.task.turning is Turning.ABOUT_Z else ()))
+    turns = {Turning.NONE: "", Turning.ABOUT_Z: "z", Turning.FULL: "xyz"}[mechanism.task.turning]
+    return (*mechanism.task.position, *(f"turn {axis}" for axis in turns))
+
+
+def _positive(mechanism: Mechanism) -> list[sp.Expr]:
+    """What is positive in this machine: stated quantities, what is left of bounds, the indicator of its assembly mode."""
+    left = [*mechanism.positive, *(b.largest - sp.Abs(b.value) for b in mechanism.bounds)]
+    if mechanism.assembly is None:
+        return left
+    way = mechanism.assembly
+    mode = way.signs[0] * (1 - 2 * real(way.parameter)) * way.indicator * sp.sign(way.handedness)
+    return [*left, mode / sp.Mul(*[rod.length for rod in mechanism.rods]) - LEAST_MARGIN]
 
 
 def _column(terms: list[Term]) -> Term:
@@ -125,7 +139,7 @@ def _column(terms: list[Term]) -> Term:
 
 
 def _position_symbols(pose: Term) -> dict[sp.Symbol, Term]:
-    return {quantity.symbol: pose[i] for i, quantity in enumerate((X, Y, Z))}
+    return {symbol: pose[i] for i, symbol in enumerate((X.symbol, Y.symbol, Z.symbol, *ROTATION))}
 
 
 def _joint_values(mechanism: Mechanism, axes: Term, known: dict[sp.Symbol, Term]) -> Term:
@@ -149,7 +163,7 @@ def _residual(mechanism: Mechanism, known: dict[sp.Symbol, Term], pose: Term) ->
     """Φ, and how many of its rows come before the rotation's."""
     if mechanism.chain is None:
         named = known | _position_symbols(pose)
-        return _column([term(sp.sympify(e), named) for e in mechanism.closure]), len(mechanism.closure)
+        return _column([term(sp.sympify(e), named) for e in mechanism.equations]), len(mechanism.equations)
     difference = _frame(mechanism.chain, known) - pose
     count = len(mechanism.task.position)
     follows = mechanism.task.turning is not Turning.NONE

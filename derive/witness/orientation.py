@@ -23,6 +23,8 @@ def check_orientation(kin: Kinematics, samples: Samples) -> float:
     zero = np.stack([image[f"zero_{name}"] for name in POSE[3:]], axis=1).reshape(-1, 3, 3)
     if kin.freedom is Freedom.ZERO:
         apart = rotation - zero
+    elif kin.freedom is Freedom.THREE:
+        apart = zero @ np.swapaxes(zero, 1, 2) - np.eye(3)
     else:
         base, flange = (np.stack([image[f"{w}_{c}"] for c in "xyz"], axis=1)[:, :, None] for w in ("rot", "u"))
         apart = np.concatenate([rotation @ flange - base, zero @ flange - base], axis=2)
@@ -34,7 +36,8 @@ def _check_projection(kin: Kinematics, samples: Samples) -> float:
     if kin.projection is None:
         return 0.0
     rotation = samples.pose[:, 3:].reshape(-1, 3, 3)
-    tilted = (_swings(len(samples)) @ rotation).reshape(-1, 9)
+    swings = np.eye(3) if kin.freedom is Freedom.THREE else _swings(len(samples))
+    tilted = (swings @ rotation).reshape(-1, 9)
     outputs, status = run(kin.projection, samples.values | {name: tilted[:, i] for i, name in enumerate(POSE[3:])})
     if (status != Status.OK).any():
         raise Disagreement(f"the projection refuses a tilt: {describe(kin, samples, int(np.argmax(status != Status.OK)))}")

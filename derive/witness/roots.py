@@ -13,7 +13,7 @@ from derive.witness.samples import SEED, Samples
 
 Rows = NDArray[np.int64]
 
-STARTS = 40
+STARTS = 160
 _ITERATIONS = 40
 _POLISH = 4
 _CONVERGED = 1e-9
@@ -67,8 +67,9 @@ def all_solutions(problem: Problem) -> list[Array]:
     count = len(problem.pose)
     rows = np.repeat(np.arange(count), STARTS)
     many = problem.take(rows)
-    size = np.where(problem.angles, np.pi, 2.0)
+    size = np.where(problem.angles, np.pi, 4.0)
     starts = np.random.default_rng(SEED).uniform(-1.0, 1.0, (len(rows), len(size))) * size
+    starts[1::2] = np.where(problem.angles, starts, np.abs(starts))[1::2]  # six lengths have 64 mirror images, one is wanted
     ends = within_one_turn(many, _newton(many, starts, _ITERATIONS))
     good = (np.linalg.norm(many.residual(ends), axis=1) < _CONVERGED) & many.is_positive(ends)
     return [distinct(ends[(rows == i) & good], problem.angles) for i in range(count)]

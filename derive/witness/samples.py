@@ -12,11 +12,13 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from derive.kinematics import Kinematics
-from derive.mechanism import Joint, Mechanism, Parameter, Role
+from derive.mechanism import Joint, Mechanism, Parameter, Role, Turning
+from derive.parameters import MIN_TYPE2_MARGIN
 from derive.program import Status
 from derive.run import Array, run
-from derive.witness.closure import POSE, Closure
+from derive.witness.closure import LEAST_MARGIN, POSE, Closure
 from derive.witness.disagreement import Disagreement
+from derive.witness.near_home import axes_near_home
 
 SEED = 20260
 MACHINES = 6
@@ -27,6 +29,8 @@ REGULAR = 0.05
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths (a gantry)."""
 _CANDIDATES = 100
+_LOOP_CANDIDATES = 2500
+"""Of a closed loop few random axis values can be assembled."""
 _SPREAD = {Role.PITCH: 20.0, Role.GEAR: 0.1, Role.COUPLING: 0.5, Role.ANGLE: 200.0}
 """How far a parameter strays whose nominal value is zero."""
 
@@ -61,12 +65,16 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     rng = np.random.default_rng(SEED)
     machines = _machines(kin, rng)
     count = len(next(iter(machines.values())))
-    machine = np.repeat(np.arange(count), _CANDIDATES)
+    is_loop = bool(kin.mechanism.rods) and kin.mechanism.task.turning is Turning.NONE
+    machine = np.repeat(np.arange(count), _LOOP_CANDIDATES if is_loop else _CANDIDATES)
     values = {name: column[machine] for name, column in machines.items()}
     reach = _reach(kin.mechanism, values)
-    axes = _axes(kin.mechanism, values, reach, rng)
-    values |= {j.axis.name: axes[:, i] for i, j in enumerate(kin.mechanism.joints)}
     parameters = np.stack([values[name] for name in closure.parameters], axis=1)
+    if kin.mechanism.task.turning is Turning.FULL:
+        axes = axes_near_home(kin.mechanism, closure, values, parameters, reach, rng)
+    else:
+        axes = _axes(kin.mechanism, values, reach, rng)
+    values |= {j.axis.name: axes[:, i] for i, j in enumerate(kin.mechanism.joints)}
     joints = closure.joints(axes, parameters)[:, :, 0]
     outputs, status = run(kin.forward, values)
     values |= outputs
@@ -75,10 +83,14 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     inside = _inside(kin.mechanism, closure, samples)
     if refused := np.flatnonzero(inside & (status != Status.OK) & (kin.mechanism.chain is not None)).tolist():
         raise Disagreement(f"forward kinematics refuses a possible pose: {describe(kin, samples, refused[0])}")
+    samples = replace(samples, jacobian=np.empty((len(axes), 0)))
+    samples = samples.take(inside & np.asarray(status == Status.OK, dtype=bool))
     samples = replace(samples, jacobian=jacobian_of(closure, samples))
-    regular = inside & (status == Status.OK) & (_least_singular_value(closure, samples) > REGULAR)
+    machine = samples.machine
+    regular = _least_singular_value(closure, samples) > REGULAR
     chosen = np.flatnonzero(regular & (_rank_within(machine, regular) <= POSES))
-    if len(np.unique(machine[chosen])) < count:
+    possible = len(np.unique(machine[chosen]))  # random dimensions may form a loop that never closes, the nominal ones not
+    if possible < (min(2, count) if kin.mechanism.rods else count) or machine[chosen][0] != 0:
         raise Disagreement("a machine has no regular pose: is the mechanism always singular?")
     return samples.take(chosen)
 
@@ -101,11 +113,14 @@ def _machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     """Parameters and constants of the machines that `setup` accepts, the nominal one first."""
     count = 8 * MACHINES
     names = {p.name for p in kin.mechanism.parameters} | {j.offset.name for j in kin.mechanism.joints}
+    names |= {kin.mechanism.assembly.parameter} if kin.mechanism.assembly else set()
     values = {}
     for parameter in kin.parameters:
         drawn = _draw(parameter, count, rng) if parameter.name in names else np.full(count, parameter.nominal)
         drawn[0] = parameter.nominal
         values[parameter.name] = drawn
+    if MIN_TYPE2_MARGIN in values:  # every regular solution counts
+        values[MIN_TYPE2_MARGIN] = np.full(count, LEAST_MARGIN)
     values.setdefault("", np.zeros(count))  # a machine without parameters still has rows
     constants, status = run(kin.setup, values)
     if status[0] != Status.OK:
@@ -133,7 +148,8 @@ def _draw(parameter: Parameter, count: int, rng: Generator) -> Array:
 def _reach(mechanism: Mechanism, values: dict[str, Array]) -> Array:
     lengths = [np.abs(values[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
     total = np.sum(lengths, axis=0) if lengths else np.zeros_like(next(iter(values.values())))
-    return np.where(total > 0, total, WITHOUT_LENGTHS)
+    legs = max(1, len(mechanism.rods)) if mechanism.task.turning is Turning.NONE else 1  # of a loop, one leg
+    return np.where(total > 0, total / legs, WITHOUT_LENGTHS)
 
 
 def _axes(mechanism: Mechanism, values: dict[str, Array], reach: Array, rng: Generator) -> Array:
@@ -171,7 +187,7 @@ def _least_singular_value(closure: Closure, samples: Samples) -> Array:
 
 
 def _rank_within(group: NDArray[np.int64], chosen: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """The how-manieth chosen row of its group a row is, from 1."""
+    """The how-manieth chosen row of its group a row is, from 1; groups stand in order."""
     total = np.cumsum(chosen)
-    before = np.array([total[group == g][0] - chosen[group == g][0] for g in np.unique(group)])
-    return np.asarray(total - before[group])
+    _, first, index = np.unique(group, return_index=True, return_inverse=True)
+    return np.asarray(total - (total - chosen)[first][index])

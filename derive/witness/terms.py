@@ -23,6 +23,7 @@ _FUNCTIONS: dict[type[sp.Basic], Callable[..., Term]] = {
     sp.sin: ca.sin,
     sp.cos: ca.cos,
     sp.Abs: ca.fabs,
+    sp.sign: ca.sign,
 }
 
 

@@ -14,7 +14,7 @@ from tests.derivation.execution import ANYTHING, LENGTHS, NUMBERS, all_finite, a
 V, W, U = (real(n) for n in "vwu")
 B, C = real("b"), real("c")
 K = sp.Symbol("k", positive=True)
-S = real("s")
+S = sp.Symbol("s", real=True, nonzero=True)
 
 MANY_TERMS = problem(K * V - B * C + C**2, lengths=(V,))
 DIRECTED = problem(S * V + B, lengths=(V,), signs=(S,))

@@ -13,7 +13,7 @@ from derive.program import DEGREE, real
 from tests.derivation.execution import ANGLES, NUMBERS, at, few
 
 A1, A2, A3 = ANGLE_NAMES = tuple(real(f"a{k}") for k in (1, 2, 3))
-S, T = real("s"), real("t")
+S, T = (sp.Symbol(n, real=True, nonzero=True) for n in "st")
 L = sp.Symbol("link", positive=True)
 X = real("x")
 

@@ -33,7 +33,7 @@ from tests.derivation.execution import (
 U, W, V = real("u"), real("w"), real("v")
 A, B, E, F = (real(n) for n in "abef")
 L1, L2 = (sp.Symbol(f"link_{k}", positive=True) for k in (1, 2))
-S = real("s")
+S = sp.Symbol("s", real=True, nonzero=True)
 FREE = reference(U)
 
 TURNED = problem(A * sp.cos(U) - B * sp.sin(U) - E, B * sp.cos(U) + A * sp.sin(U) - F, angles=(U,))

@@ -29,7 +29,7 @@ X, Y, Z = (real(n) for n in "xyz")
 L1, L2 = (sp.Symbol(f"link_{k}", positive=True) for k in (1, 2))
 TOOL_X, TOOL_Y, TURN = real("tool_x"), real("tool_y"), real("turn")
 K = sp.Symbol("k", positive=True)
-S = real("s")
+S = sp.Symbol("s", real=True, nonzero=True)
 COUNT = 40
 
 
@@ -98,7 +98,7 @@ CASES = {
         (A1, A2, A3),
         rules=("pair", "trigonometric", "pair", "sum"),
     ),
-    "belts": Case({"x": 2 * P - 3 * Q, "y": K * P + L1 * Q}, (), (P, Q), rules=("affine", "affine"), slots=1),
+    "belts": Case({"x": 2 * P - 3 * Q, "y": K * P + L1 * Q}, (), (P, Q), rules=("affine pair",), slots=1),
     "spherical": Case(
         {"x": P * sp.cos(A2) * sp.cos(A1), "y": P * sp.cos(A2) * sp.sin(A1), "z": P * sp.sin(A2)},
         (A1, A2),

@@ -23,13 +23,21 @@ from softkin._types import (
 )
 
 if TYPE_CHECKING:
+    from softkin.bipod_rotary import BipodRotary
     from softkin.crane import Crane
+    from softkin.delta_p3c_type3 import DeltaP3CType3
     from softkin.gantry2 import Gantry2
     from softkin.gantry3 import Gantry3
     from softkin.gantrycutter2 import GantryCutter2
     from softkin.gantrycutter3 import GantryCutter3
+    from softkin.hexapod import Hexapod
     from softkin.hgantry2 import HGantry2
     from softkin.hgantry3 import HGantry3
+    from softkin.mc_kin_type_12_xy import KinType12XY
+    from softkin.p2c_type1 import P2CType1
+    from softkin.p2c_type2 import P2CType2
+    from softkin.p2x_type1 import P2XType1
+    from softkin.p2x_type2 import P2XType2
     from softkin.p2y import P2Y
     from softkin.pcc import PCC
     from softkin.polar import Polar
@@ -44,14 +52,19 @@ if TYPE_CHECKING:
     from softkin.sccc import SCCC
     from softkin.tgantry2 import TGantry2
     from softkin.tgantry3 import TGantry3
+    from softkin.tripod_linear import TripodLinear
+    from softkin.tripod_p3z import TripodP3Z
+    from softkin.tripod_rotary import TripodRotary
 
 __all__ = [
     "P2Y",
     "PCC",
     "SCCC",
     "Axis",
+    "BipodRotary",
     "ConfigurationByte",
     "Crane",
+    "DeltaP3CType3",
     "Frame",
     "Gantry2",
     "Gantry3",
@@ -59,9 +72,15 @@ __all__ = [
     "GantryCutter3",
     "HGantry2",
     "HGantry3",
+    "Hexapod",
+    "KinType12XY",
     "KinematicsError",
     "Mechanism",
     "OrientationImage",
+    "P2CType1",
+    "P2CType2",
+    "P2XType1",
+    "P2XType2",
     "Parameter",
     "Polar",
     "PolarZ",
@@ -77,17 +96,28 @@ __all__ = [
     "Status",
     "TGantry2",
     "TGantry3",
+    "TripodLinear",
+    "TripodP3Z",
+    "TripodRotary",
     "catalogue",
 ]
 
 _CLASSES: dict[str, tuple[str, str]] = {
+    "Kin_Bipod_Rotary": ("bipod_rotary", "BipodRotary"),
     "Kin_Crane": ("crane", "Crane"),
+    "Kin_Delta_P3C_Type3": ("delta_p3c_type3", "DeltaP3CType3"),
     "Kin_Gantry2": ("gantry2", "Gantry2"),
     "Kin_Gantry3": ("gantry3", "Gantry3"),
     "Kin_GantryCutter2": ("gantrycutter2", "GantryCutter2"),
     "Kin_GantryCutter3": ("gantrycutter3", "GantryCutter3"),
+    "Kin_Hexapod": ("hexapod", "Hexapod"),
     "Kin_HGantry2": ("hgantry2", "HGantry2"),
     "Kin_HGantry3": ("hgantry3", "HGantry3"),
+    "MC_KIN_TYPE_12_XY": ("mc_kin_type_12_xy", "KinType12XY"),
+    "Kin_P2C_Type1": ("p2c_type1", "P2CType1"),
+    "Kin_P2C_Type2": ("p2c_type2", "P2CType2"),
+    "Kin_P2X_Type1": ("p2x_type1", "P2XType1"),
+    "Kin_P2X_Type2": ("p2x_type2", "P2XType2"),
     "Kin_P2Y": ("p2y", "P2Y"),
     "Kin_PCC": ("pcc", "PCC"),
     "Kin_Polar": ("polar", "Polar"),
@@ -102,6 +132,9 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_SCCC": ("sccc", "SCCC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),
     "Kin_TGantry3": ("tgantry3", "TGantry3"),
+    "Kin_Tripod_Linear": ("tripod_linear", "TripodLinear"),
+    "Kin_Tripod_P3Z": ("tripod_p3z", "TripodP3Z"),
+    "Kin_Tripod_Rotary": ("tripod_rotary", "TripodRotary"),
 }
 """The module and the class of every mechanism."""
 _MODULES = {class_name: module for module, class_name in _CLASSES.values()}

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -14,7 +15,8 @@ from softkin._types import Status
 
 __all__ = [
     "DEGREE", "Array", "Codes", "Programs", "Real", "Reals", "Rotation", "Vector",
-    "absolute", "atan2", "cos", "nearest_on_arc", "nearest_period", "passed", "require", "root", "select", "sin",
+    "StartedPrograms", "absolute", "advanced", "atan2", "cos", "initial", "nearest_on_arc", "nearest_period", "passed",
+    "require", "root", "select", "settled", "sin", "solve",
 ]  # fmt: skip
 
 Array: TypeAlias = NDArray[np.float64]
@@ -49,6 +51,16 @@ class Programs(ABC):
         """Whether the axes are inside their limits."""
 
 
+class StartedPrograms(Programs):
+    """The same of a mechanism whose forward kinematics iterates."""
+
+    @abstractmethod
+    def forward_from(
+        self, axes: Reals, start_position: Vector, start_rotation: Rotation
+    ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
+        """Forward kinematics from a given start."""
+
+
 def passed(values: tuple[Real, ...]) -> Codes:
     """The statuses of rows before any condition: all OK."""
     return np.zeros(np.shape(values[0]), np.uint8)
@@ -57,6 +69,21 @@ def passed(values: tuple[Real, ...]) -> Codes:
 def require(status: Codes, condition: Truth, otherwise: Status) -> None:
     """Give the rows where the condition does not hold their status, unless they have one already."""
     status[np.logical_not(condition) & (status == Status.OK)] = otherwise
+
+
+def initial(*values: Real) -> Reals:
+    """The state before the first pass."""
+    return values
+
+
+def settled(done: Truth, status: Codes) -> bool:
+    """Whether no row has to go on: each is done, or has been refused."""
+    return bool(np.all(done | (status != Status.OK)))
+
+
+def advanced(done: Truth, state: Reals, following: Reals) -> Reals:
+    """The state for the next pass: rows that are done keep theirs."""
+    return tuple(np.where(done, old, new) for old, new in zip(state, following, strict=True))
 
 
 def sin(x: Real) -> Real:
@@ -106,3 +133,29 @@ def nearest_on_arc(angle: Real, centre: Real, half: Real) -> Real:
     turns: Array = np.floor((delta + np.pi) / _TURN)
     bounded: Array = np.minimum(np.maximum(delta - _TURN * turns, -half), half)
     return centre + bounded
+
+
+def solve(matrix: Sequence[Reals], right: Sequence[Reals]) -> Reals:
+    """The determinant, then the solution by rows: LU decomposition with partial pivoting. Zeros for a singular matrix."""
+    size = len(matrix)
+    rows = [[*row, *more] for row, more in zip(matrix, right or [()] * size, strict=True)]
+    table = np.array(np.broadcast_arrays(*(entry for row in rows for entry in row))).reshape(size, len(rows[0]), -1)
+    tiny = 1e-14 * np.max(np.abs(table[:, :size]), axis=(0, 1))
+    determinant, regular = np.ones_like(tiny), np.ones(tiny.shape, np.bool_)
+    every = np.arange(len(tiny))
+    for k in range(size):
+        best = k + np.argmax(np.abs(table[k:, k]), axis=0)
+        chosen = table[best, :, every].T.copy()
+        table[best, :, every] = table[k].T
+        table[k] = chosen
+        determinant = np.where(best == k, determinant, -determinant) * table[k, k]
+        regular &= np.abs(table[k, k]) > tiny
+        divisor = np.where(regular, table[k, k], 1.0)
+        factors = table[k + 1 :, k] / divisor
+        table[k + 1 :, k + 1 :] -= factors[:, None] * table[k, k + 1 :]
+    for k in reversed(range(size)):
+        for i in range(k + 1, size):
+            table[k, size:] -= table[k, i] * table[i, size:]
+        table[k, size:] /= np.where(regular, table[k, k], 1.0)
+    solution = np.where(regular, table[:, size:], 0.0)
+    return (np.where(regular, determinant, 0.0), *solution.reshape(-1, len(tiny)))

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from softkin._array import Array, Codes, Programs, Real, Reals, Rotation
+from softkin._array import Array, Codes, Programs, Real, Reals, Rotation, StartedPrograms, Vector
 from softkin._configuration import AUTOMATIC, COINCIDE, COINCIDENT, EDGE, FIRST, SECOND, TIE, slots
 from softkin._table import numbers, signed_bytes
 from softkin._types import Configuration, KinematicsError, Status
@@ -25,19 +25,39 @@ _UNTRIED = 255
 
 Bytes: TypeAlias = NDArray[np.int8]
 Integers: TypeAlias = NDArray[np.int64]
+_Poses: TypeAlias = tuple[tuple[Vector, Rotation, Reals], Codes]
 
 
 def forward(robot: Mechanism, programs: Programs, axes: ArrayLike) -> tuple[Array, Array, Bytes, Codes]:
     """Forward kinematics of every row."""
     values = numbers(axes, None, (len(robot.AXES),), "axes")
+    return _poses(robot, values, lambda rows: programs.forward(_columns(values[rows])))
+
+
+def forward_from(
+    robot: Mechanism, programs: StartedPrograms, axes: ArrayLike, start: tuple[ArrayLike, ArrayLike]
+) -> tuple[Array, Array, Bytes, Codes]:
+    """Forward kinematics of every row, from a frame of its own or from one for all."""
+    values = numbers(axes, None, (len(robot.AXES),), "axes")
+    places = numbers(start[0], len(values), (3,), "start positions")
+    turns = numbers(start[1], len(values), (3, 3), "start rotations")
+
+    def from_start(rows: slice) -> _Poses:
+        x, y, z = _columns(places[rows])
+        a, b, c, d, e, f, g, h, i = _columns(turns[rows].reshape(-1, 9))
+        return programs.forward_from(_columns(values[rows]), (x, y, z), ((a, b, c), (d, e, f), (g, h, i)))
+
+    return _poses(robot, values, from_start)
+
+
+def _poses(robot: Mechanism, values: Array, program: Callable[[slice], _Poses]) -> tuple[Array, Array, Bytes, Codes]:
     count = len(values)
     positions, rotations = np.empty((count, 3)), np.empty((count, 3, 3))
     configurations = np.zeros((count, len(robot.CONFIGURATION)), np.int8)
     statuses = np.empty(count, np.uint8)
     for rows in _chunks(count):
-        columns = _columns(values[rows])
         with np.errstate(all="ignore"):
-            (position, rotation, measures), status = programs.forward(columns)
+            (position, rotation, measures), status = program(rows)
         failed = status != Status.OK
         _write(positions[rows], position, failed)
         for i in range(3):

@@ -90,6 +90,8 @@ class Mechanism(ABC):
         """The error for parameters that do not meet a condition. The condition on a single one is its range."""
         found = ", ".join(f"{name} = {value!r}" for name, value in values.items())
         needed = condition
+        if not values:
+            return KinematicsError(Status.NOT_INITIALIZED, f"{self.NAME}: the parameters must give {condition}")
         if len(values) == 1:
             (parameter,) = (p for p in self.PARAMETERS if p.name in values)
             needed = f"{parameter.range} ({condition.removeprefix(parameter.name + ': ')})"

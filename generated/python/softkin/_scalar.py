@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from math import cos, floor, pi, sin, sqrt
 
-__all__ = ["DEGREE", "atan2", "cos", "nearest_on_arc", "nearest_period", "root", "sin"]
+__all__ = ["DEGREE", "atan2", "cos", "nearest_on_arc", "nearest_period", "root", "sin", "solve"]
 
 DEGREE = pi / 180.0
 """One degree in radians."""
@@ -37,3 +38,32 @@ def nearest_on_arc(angle: float, centre: float, half: float) -> float:
     delta = angle - centre
     delta -= _TURN * floor((delta + pi) / _TURN)
     return centre + min(max(delta, -half), half)
+
+
+def solve(matrix: Sequence[Sequence[float]], right: Sequence[Sequence[float]]) -> tuple[float, ...]:
+    """The determinant, then the solution by rows: LU decomposition with partial pivoting. Zeros for a singular matrix.
+
+    matrix, right: by rows; without right-hand sides the determinant alone.
+    """
+    rows = [[*row, *more] for row, more in zip(matrix, right or [()] * len(matrix), strict=True)]
+    size, width = len(matrix), len(rows[0])
+    tiny = 1e-14 * max(abs(entry) for row in matrix for entry in row)
+    determinant = 1.0
+    for k in range(size):
+        best = max(range(k, size), key=lambda i: abs(rows[i][k]))
+        if not abs(rows[best][k]) > tiny:
+            return (0.0,) * (1 + size * (width - size))
+        if best != k:
+            rows[k], rows[best] = rows[best], rows[k]
+            determinant = -determinant
+        determinant *= rows[k][k]
+        for i in range(k + 1, size):
+            factor = rows[i][k] / rows[k][k]
+            for j in range(k + 1, width):
+                rows[i][j] -= factor * rows[k][j]
+    for k in reversed(range(size)):
+        for j in range(size, width):
+            for i in range(k + 1, size):
+                rows[k][j] -= rows[k][i] * rows[i][j]
+            rows[k][j] /= rows[k][k]
+    return (determinant, *(entry for row in rows for entry in row[size:]))

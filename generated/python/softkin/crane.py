@@ -393,10 +393,10 @@ class Crane(OffsetKinematics):
         # Phi where the machine has no pose
         if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
-        phi = DEGREE*(axis_phi - offset_phi)
-        sin_phi = sin(phi)
         theta = DEGREE*(axis_theta - offset_theta)
         cos_theta = cos(theta)
+        phi = DEGREE*(axis_phi - offset_phi)
+        sin_phi = sin(phi)
         r = axis_r - offset_r
         sin_theta = sin(theta)
         cos_phi = cos(phi)

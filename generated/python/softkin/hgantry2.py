@@ -263,9 +263,9 @@ class HGantry2(OffsetKinematics):
         # z of a planar machine
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
-        a = x - y  # a: affine in the x and y equation
+        a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
-        b = a - 2.0*x  # b: affine in the x equation
+        b = -x - y
         axis_b = b + offset_b
         return (axis_a, axis_b)
 
@@ -340,9 +340,9 @@ class HGantry2(OffsetKinematics):
         # z of a planar machine
         if not (abs(point_z - z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
-        b = point_x + point_y - x - y  # b: affine in the x and y equation
-        a = b + 2.0*x - 2.0*point_x  # a: affine in the x equation
+        a = point_y + x - point_x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
+        b = point_x + point_y - x - y
         axis_b = b + offset_b
         return (axis_a, axis_b)
 

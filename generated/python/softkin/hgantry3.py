@@ -304,9 +304,9 @@ class HGantry3(OffsetKinematics):
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return Status.BAD_INPUT
-        a = x - y  # a: affine in the x and y equation
+        a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
-        b = a - 2.0*x  # b: affine in the x equation
+        b = -x - y
         axis_b = b + offset_b
         axis_z = offset_z + z
         return (axis_a, axis_b, axis_z)
@@ -384,9 +384,9 @@ class HGantry3(OffsetKinematics):
             and abs(point_z) <= 1e9
         ):
             return Status.BAD_INPUT
-        b = point_x + point_y - x - y  # b: affine in the x and y equation
-        a = b + 2.0*x - 2.0*point_x  # a: affine in the x equation
+        a = point_y + x - point_x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
+        b = point_x + point_y - x - y
         axis_b = b + offset_b
         joint_z = z - point_z  # joint_z: affine in the z equation
         axis_z = joint_z + offset_z

@@ -263,9 +263,9 @@ class P2Y(OffsetKinematics):
         # z of a planar machine
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
-        a2 = y - x  # a2: affine in the x and y equation
-        a1 = a2 + 2.0*x  # a1: affine in the x equation
+        a1 = x + y  # a1, a2: affine in the x and y equations
         axis_a1 = a1 + offset_a1
+        a2 = y - x
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
 
@@ -340,9 +340,9 @@ class P2Y(OffsetKinematics):
         # z of a planar machine
         if not (abs(point_z - z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
-        a2 = point_x + y - point_y - x  # a2: affine in the x and y equation
-        a1 = a2 + 2.0*x - 2.0*point_x  # a1: affine in the x equation
+        a1 = x + y - point_x - point_y  # a1, a2: affine in the x and y equations
         axis_a1 = a1 + offset_a1
+        a2 = point_x + y - point_y - x
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2)
 

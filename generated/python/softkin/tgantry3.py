@@ -304,9 +304,9 @@ class TGantry3(OffsetKinematics):
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return Status.BAD_INPUT
-        b = x + y  # b: affine in the x and y equation
-        a = 2.0*x - b  # a: affine in the x equation
+        a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
+        b = x + y
         axis_b = b + offset_b
         axis_z = offset_z + z
         return (axis_a, axis_b, axis_z)
@@ -384,9 +384,9 @@ class TGantry3(OffsetKinematics):
             and abs(point_z) <= 1e9
         ):
             return Status.BAD_INPUT
-        b = x + y - point_x - point_y  # b: affine in the x and y equation
-        a = 2.0*x - b - 2.0*point_x  # a: affine in the x equation
+        a = point_y + x - point_x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
+        b = x + y - point_x - point_y
         axis_b = b + offset_b
         joint_z = z - point_z  # joint_z: affine in the z equation
         axis_z = joint_z + offset_z

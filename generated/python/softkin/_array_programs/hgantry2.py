@@ -48,9 +48,9 @@ class ArrayPrograms(Programs):
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z of a planar machine
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
-        a = x - y  # a: affine in the x and y equation
+        a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
-        b = a - 2.0*x  # b: affine in the x equation
+        b = -x - y
         axis_b = b + offset_b
         return (axis_a, axis_b), status
 

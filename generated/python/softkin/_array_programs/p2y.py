@@ -48,9 +48,9 @@ class ArrayPrograms(Programs):
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         # z of a planar machine
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
-        a2 = y - x  # a2: affine in the x and y equation
-        a1 = a2 + 2.0*x  # a1: affine in the x equation
+        a1 = x + y  # a1, a2: affine in the x and y equations
         axis_a1 = a1 + offset_a1
+        a2 = y - x
         axis_a2 = a2 + offset_a2
         return (axis_a1, axis_a2), status
 

@@ -52,9 +52,9 @@ class ArrayPrograms(Programs):
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        b = x + y  # b: affine in the x and y equation
-        a = 2.0*x - b  # a: affine in the x equation
+        a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
+        b = x + y
         axis_b = b + offset_b
         axis_z = offset_z + z
         return (axis_a, axis_b, axis_z), status

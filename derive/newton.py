@@ -1,0 +1,170 @@
+"""Forward kinematics of a platform that moves freely: Newton's method on its rods, from a start pose.
+
+The state is the position, and the turn away from the start as roll, pitch and yaw: R = Rz(yaw) Ry(pitch) Rx(roll) R_start.
+A step solves A (v, w) = -e for the twist; w = E (roll', pitch', yaw') gives the rates of the angles. Steps are bounded by half
+the machine and half a radian, so that nothing can overflow and far starts do not jump to another way of assembling the rods.
+It is done when the rods fit for the second time: the step between leaves rounding errors only, however small det A is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
+from derive.forward import Forward, named_trigonometry
+from derive.mechanism import Mechanism
+from derive.platform import (
+    ANGLES,
+    ASSEMBLY_SIGN,
+    COORDINATES,
+    DETERMINANT,
+    HOME_ROTATION,
+    POSITION,
+    RADIUS,
+    SCALE,
+    by_angles,
+    length,
+    names,
+    of,
+    point_of,
+    row,
+    rows,
+    span,
+    turned,
+)
+from derive.program import (
+    CONVERGED,
+    FREE_ANGLE,
+    Iterate,
+    Let,
+    Require,
+    Root,
+    Select,
+    Solve,
+    Statement,
+    Status,
+    real,
+)
+
+LIMIT = 20
+"""Passes of the loop: from the neighbouring pose it takes four."""
+START_POSITION = tuple(real(f"start_{c}") for c in COORDINATES)
+START_ROTATION = tuple(real(f"start_{r.name}") for r in ROTATION_ENTRIES)
+_TURN = tuple(real(f"turned_{r.name[1:]}") for r in ROTATION_ENTRIES)
+"""The turn away from the start."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where Newton's method starts: a pose, and the arms of the rods there."""
+
+    statements: tuple[Statement, ...]
+    position: tuple[sp.Expr, ...]
+    rotation: tuple[sp.Symbol, ...]
+    arm: str
+
+
+def at_home(mechanism: Mechanism) -> Start:
+    """Start at the machine's home pose."""
+    return Start((), mechanism.home[:3], HOME_ROTATION, "home_arm")
+
+
+def at_given(mechanism: Mechanism) -> Start:
+    """Start at a given pose: inputs of the program."""
+    arms = (let for rod in mechanism.rods for let in turned(START_ROTATION, point_of(rod), names("start_arm", rod)))
+    checks = (*finite([*START_POSITION, *START_ROTATION]), *is_rotation(START_ROTATION))
+    return Start((*checks, *arms), START_POSITION, START_ROTATION, "start_arm")
+
+
+def platform_pose(mechanism: Mechanism, start: Start) -> Forward:
+    """The pose of the platform at its axis values."""
+    positive = sp.And(*[sp.Gt(v, 0) for v in mechanism.positive])
+    checks: tuple[Statement, ...] = (
+        *finite([j.axis for j in mechanism.joints]),
+        *joint_lets(mechanism),
+        Require(positive, Status.IMPOSSIBLE, "the mirror that the machine does not have"),
+    )
+    return Forward((*checks, *_newton(mechanism, start)), POSITION, ROTATION_ENTRIES)
+
+
+def _newton(mechanism: Mechanism, start: Start) -> tuple[Statement, ...]:
+    """The pose at given joints: position, rotation, and the rows of A there."""
+    pose = (*POSITION, *map(real, ANGLES))
+    within = real("within")
+    bases = _bases(mechanism)
+    fits = sp.And(*[sp.Le(sp.Abs(of("error", rod)), within) for rod in mechanism.rods])
+    fit, fitted, half = real("fit"), real("fitted"), sp.Rational(1, 2)
+    rotation = sp.Matrix(3, 3, _TURN) * sp.Matrix(3, 3, list(start.rotation))
+    loop = Iterate(
+        state=(*pose, fitted),
+        start=(*start.position, *[sp.Integer(0)] * 4),
+        step=(
+            *_pass(mechanism, start, bases),
+            Let(fit, Select(fits, sp.Integer(1), sp.Integer(0)), "whether the rods fit"),
+            *_step(mechanism),
+        ),
+        following=(*(s + real(f"{s.name}_rate") / real("stretch") for s in pose), fit),
+        done=sp.And(sp.Gt(fit, half), sp.Gt(fitted, half)),
+        limit=LIMIT,
+        otherwise=Status.IMPOSSIBLE,
+        note="Newton's method: every pass improves the pose until the rods fit",
+    )
+    return (
+        *start.statements,
+        *bases[0],
+        Let(within, CONVERGED * SCALE, "lengths that agree to this are equal"),
+        loop,
+        Require(sp.Gt(ASSEMBLY_SIGN * DETERMINANT, 0), Status.IMPOSSIBLE, "the other assembly mode"),
+        *(Let(n, v) for n, v in zip(ROTATION_ENTRIES, rotation, strict=True)),
+    )
+
+
+def _bases(mechanism: Mechanism) -> tuple[tuple[Let, ...], list[sp.Expr]]:
+    """Where the rods start and how long they are, every sine and cosine under its name."""
+    return named_trigonometry(mechanism, [v for rod in mechanism.rods for v in (*rod.base, rod.length)])
+
+
+def _pass(mechanism: Mechanism, start: Start, bases: tuple[tuple[Let, ...], list[sp.Expr]]) -> tuple[Let, ...]:
+    """The rods at the pose that the state is."""
+    lets = [Let(real(f"{w}_{a}"), f(real(a))) for a in ANGLES for w, f in (("cos", sp.cos), ("sin", sp.sin))]
+    lets += [Let(n, v) for n, v in zip(_TURN, by_angles(), strict=True)]
+    for i, rod in enumerate(mechanism.rods):
+        *base, wanted = bases[1][4 * i : 4 * i + 4]
+        arm = names("arm", rod)
+        lets += turned(_TURN, names(start.arm, rod), arm)
+        lets += [*span(rod, POSITION, arm, base), length(rod), *row(rod, arm, of("length", rod))]
+        lets.append(Let(of("error", rod), of("length", rod) - wanted, f"by what rod {rod.name} would be too long"))
+    return tuple(lets)
+
+
+def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:
+    """The rates of the state that let every error vanish, and by how much they are stretched to stay within bounds."""
+    twist = tuple(real(f"{c}_rate") for c in COORDINATES), tuple(real(f"swing_{c}") for c in COORDINATES)
+    spin = tuple(real(f"spin_{c}") for c in COORDINATES)
+    size = real("size")
+    too_large = sp.Gt(size, sp.Rational(1, 2))
+    shares = [*(v / SCALE for v in twist[0]), *(real(f"{a}_rate") for a in ANGLES)]
+    errors = tuple(-of("error", rod) for rod in mechanism.rods)
+    return (
+        Solve((*twist[0], *twist[1]), rows(mechanism), errors, DETERMINANT, "the twist that lets the errors vanish"),
+        *(Let(n, v / RADIUS) for n, v in zip(spin, twist[1], strict=True)),
+        *_rates(spin),
+        Let(size, Root(sp.Add(*[s**2 for s in shares])), "of the step, in machines and radians"),
+        Let(real("stretch"), Select(too_large, 2 * size, sp.Integer(1))),
+    )
+
+
+def _rates(spin: Sequence[sp.Expr]) -> tuple[Let, ...]:
+    """w = E (roll', pitch', yaw') with E = [[cp cy, -sy, 0], [cp sy, cy, 0], [-sp, 0, 1]], solved for the rates."""
+    roll, pitch, yaw = (real(f"{a}_rate") for a in ANGLES)
+    cos_pitch, sin_pitch, cos_yaw, sin_yaw = map(real, ("cos_pitch", "sin_pitch", "cos_yaw", "sin_yaw"))
+    divisor = real("cos_pitch_divisor")
+    return (
+        Let(divisor, Select(sp.Gt(sp.Abs(cos_pitch), FREE_ANGLE), cos_pitch, sp.Integer(1))),
+        Let(roll, (cos_yaw * spin[0] + sin_yaw * spin[1]) / divisor),
+        Let(pitch, cos_yaw * spin[1] - sin_yaw * spin[0]),
+        Let(yaw, spin[2] + sin_pitch * roll),
+    )

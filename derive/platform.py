@@ -1,0 +1,201 @@
+"""A platform on rods that moves with its whole pose: its legs, its home pose, and the margin of its singularity.
+
+Rod i holds the plate by e = |span| - length. With a the arm from the frame of the plate to the rod's joint and u the unit
+vector along the rod, e' = [u, a x u] (v, w): these rows are A. Moments are divided by the platform's radius, so that
+det A is a number without a unit; it is zero where the rods lie in one linear complex (type 2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from derive.edges import ROTATION_ENTRIES
+from derive.mechanism import DescriptionError, Mechanism, Rod, on_plate
+from derive.passes import assemble
+from derive.program import (
+    FREE_ANGLE,
+    SHORTEST_LINK,
+    SINGULAR,
+    Let,
+    Output,
+    Program,
+    Require,
+    Root,
+    Select,
+    Solve,
+    Statement,
+    Status,
+    real,
+)
+
+ASSEMBLY_SIGN = real("assembly_sign")
+"""The sign of det A at the home pose: the assembly mode of the machine."""
+SCALE = real("machine_scale")
+"""A length of the machine: the sum of its lengths, or one user's unit where it has none; the mean leg of a platform."""
+MIN_TYPE2_MARGIN = "min_type2_margin"
+DETERMINANT = real("determinant")
+RADIUS = real("platform_radius")
+MARGIN = "rods_dependent"
+COORDINATES = ("x", "y", "z")
+POSITION = tuple(map(real, COORDINATES))
+ANGLES = ("roll", "pitch", "yaw")
+HOME_ROTATION = tuple(real(f"home_{r.name}") for r in ROTATION_ENTRIES)
+
+Vector = tuple[sp.Expr, ...]
+
+
+def names(word: str, rod: Rod) -> tuple[sp.Symbol, ...]:
+    """The names of a vector that belongs to a rod: `span_1_x` and so on."""
+    return tuple(real(f"{word}_{rod.name}_{c}") for c in COORDINATES)
+
+
+def of(word: str, rod: Rod) -> sp.Symbol:
+    """The name of a number that belongs to a rod: `length_1`."""
+    return real(f"{word}_{rod.name}")
+
+
+def point_of(rod: Rod) -> Vector:
+    """The rod's joint in the frame of the plate."""
+    point = tuple(sp.diff(rod.plate[0], entry) for entry in ROTATION_ENTRIES[:3])
+    if any(sp.expand(a - b) != 0 for a, b in zip(rod.plate, on_plate(*point), strict=True)):
+        raise DescriptionError(f"rod {rod.name!r}: its end must be a point of the plate")
+    return point
+
+
+def turned(rotation: Sequence[sp.Expr], point: Sequence[sp.Expr], called: Sequence[sp.Symbol]) -> tuple[Let, ...]:
+    """A point turned by a rotation given by rows."""
+    matrix = sp.Matrix(3, 3, list(rotation))
+    return tuple(Let(n, v) for n, v in zip(called, matrix * sp.Matrix(list(point)), strict=True))
+
+
+def by_angles(words: Sequence[str] = ANGLES) -> sp.Matrix:
+    """Rz(yaw) Ry(pitch) Rx(roll), by the names of the cosines and sines."""
+    (cr, cp, cy), (sr, sp_, sy) = (tuple(real(f"{f}_{w}") for w in words) for f in ("cos", "sin"))
+    return sp.Matrix(
+        [
+            [cy * cp, cy * sp_ * sr - sy * cr, cy * sp_ * cr + sy * sr],
+            [sy * cp, sy * sp_ * sr + cy * cr, sy * sp_ * cr - cy * sr],
+            [-sp_, cp * sr, cp * cr],
+        ]
+    )
+
+
+def span(rod: Rod, position: Sequence[sp.Expr], arm: Sequence[sp.Expr], base: Sequence[sp.Expr]) -> tuple[Let, ...]:
+    """From the joint on the base to the joint on the plate."""
+    return tuple(Let(n, p + a - b) for n, p, a, b in zip(names("span", rod), position, arm, base, strict=True))
+
+
+def length(rod: Rod) -> Let:
+    """The length of the span."""
+    return Let(of("length", rod), Root(sp.Add(*[c**2 for c in names("span", rod)])))
+
+
+def row(rod: Rod, arm: Sequence[sp.Expr], measured: sp.Expr) -> tuple[Let, ...]:
+    """A row of A: the direction of a span of known length, and its moment about the frame of the plate."""
+    along, divisor = names("along", rod), of("divisor", rod)
+    moment = sp.Matrix(list(arm)).cross(sp.Matrix(along)) / RADIUS
+    return (
+        Let(divisor, Select(sp.Gt(measured, SHORTEST_LINK * SCALE), measured, sp.Integer(1))),
+        *(Let(a, s / divisor) for a, s in zip(along, names("span", rod), strict=True)),
+        *(Let(n, v) for n, v in zip(names("moment", rod), moment, strict=True)),
+    )
+
+
+def rows(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """A, by rows."""
+    return tuple(entry for rod in mechanism.rods for word in ("along", "moment") for entry in names(word, rod))
+
+
+def machine_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """What depends on the machine alone: home rotation and arms, scales, and the assembly mode at the home pose."""
+    if len(mechanism.rods) != 6 or len(mechanism.home) != 6:
+        raise DescriptionError("a platform that moves freely needs six rods and a home pose of six coordinates")
+    turns = tuple(zip(ANGLES, mechanism.home[3:], strict=True))
+    trigonometric = (Let(real(f"{w}_home_{n}"), f(v)) for n, v in turns for w, f in (("cos", sp.cos), ("sin", sp.sin)))
+    rotation = by_angles([f"home_{n}" for n in ANGLES])
+    return (
+        *trigonometric,
+        *(Let(n, v) for n, v in zip(HOME_ROTATION, rotation, strict=True)),
+        *(let for rod in mechanism.rods for let in turned(HOME_ROTATION, point_of(rod), names("home_arm", rod))),
+        *_platform_radius(mechanism),
+        *_at_home(mechanism),
+    )
+
+
+def _platform_radius(mechanism: Mechanism) -> tuple[Let, ...]:
+    points = [point_of(rod) for rod in mechanism.rods]
+    centre = tuple(real(f"centre_{c}") for c in COORDINATES)
+    means = (sp.Add(*column) / len(points) for column in zip(*points, strict=True))
+    squares = [(c - m) ** 2 for point in points for c, m in zip(point, centre, strict=True)]
+    spread = real("spread")
+    return (
+        *(Let(n, v, "centre of the joints on the platform") for n, v in zip(centre, means, strict=True)),
+        Let(spread, Root(sp.Add(*squares) / len(points)), "their mean distance from it"),
+        Let(RADIUS, Select(sp.Gt(spread, 0), spread, sp.Integer(1))),
+    )
+
+
+def _at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """The legs at the home pose, which must hold the platform."""
+    rods, arms = mechanism.rods, [names("home_arm", rod) for rod in mechanism.rods]
+    lengths = tuple(of("length", rod) for rod in rods)
+    shortest = SHORTEST_LINK * SCALE
+    apart = sp.And(sp.Gt(real("spread"), shortest), *[sp.Gt(v, shortest) for v in lengths])
+    spans = (span(rod, mechanism.home[:3], arm, rod.base) for rod, arm in zip(rods, arms, strict=True))
+    return (
+        *(let for lets in spans for let in lets),
+        *(length(rod) for rod in rods),
+        Let(SCALE, sp.Add(*lengths) / len(lengths) + RADIUS, "a length of the machine: the mean leg and the platform"),
+        Require(apart, Status.NOT_INITIALIZED, "legs that have a length at the home pose, and joints that are apart"),
+        *(let for rod, arm in zip(rods, arms, strict=True) for let in row(rod, arm, of("length", rod))),
+        Solve((), rows(mechanism), (), DETERMINANT, "the legs at the home pose: zero where they do not hold the platform"),
+        Require(sp.Gt(sp.Abs(DETERMINANT), SINGULAR), Status.NOT_INITIALIZED, "a home pose at which the legs hold the platform"),
+        Let(ASSEMBLY_SIGN, Select(sp.Gt(DETERMINANT, 0), sp.Integer(1), sp.Integer(-1)), "assembly mode of this machine"),
+    )
+
+
+def machine_constants(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """Those of these names that other programs may read."""
+    arms = (n for rod in mechanism.rods for n in names("home_arm", rod))
+    return (*HOME_ROTATION, *arms, RADIUS, SCALE, ASSEMBLY_SIGN)
+
+
+def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[Statement, ...]:
+    """What a solved inverse must satisfy: legs with a length, in the machine's assembly mode, and far from losing the plate."""
+    bound = {s.name for s in solved if isinstance(s, Let)}
+    lets: list[Let] = []
+    for rod in mechanism.rods:
+        arm = names("arm", rod)
+        found = (*turned(ROTATION_ENTRIES, point_of(rod), arm), *span(rod, POSITION, arm, rod.base), *row(rod, arm, rod.length))
+        lets += [let for let in found if let.name not in bound]
+    long_enough = sp.And(*[sp.Gt(rod.length, SHORTEST_LINK * SCALE) for rod in mechanism.rods])
+    margin = sp.Ge(ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN))
+    return (
+        *lets,
+        Require(long_enough, Status.UNREACHABLE, "a leg without length has no direction"),
+        Solve((), rows(mechanism), (), DETERMINANT, "margin of the platform"),
+        Require(margin, Status.UNREACHABLE, f"{MARGIN}: the other assembly mode, or too near to losing the plate"),
+    )
+
+
+def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
+    """A^-1 (-B) at a pose that forward kinematics has found: how joints move the plate."""
+    joints = [j.symbol for j in mechanism.joints]
+    driven = sp.Matrix([_driven(rod).jacobian(joints) for rod in mechanism.rods]) * motors
+    width = len(joints)
+    entries = [real(f"column_{k % width + 1}_{'vw'[k // width // 3]}{COORDINATES[k // width % 3]}") for k in range(6 * width)]
+    held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, "nothing controls the plate")
+    system = Solve(tuple(entries), rows(mechanism), tuple(driven), None, "how the legs move the platform")
+    return (held, system), [e if k // width < 3 else e / RADIUS for k, e in enumerate(entries)]
+
+
+def _driven(rod: Rod) -> sp.Matrix:
+    """Minus the residual of a rod as far as joints move it, its direction held: along . base + length."""
+    return sp.Matrix([sum((a * b for a, b in zip(names("along", rod), rod.base, strict=True)), rod.length)])
+
+
+def platform_singularity(statements: Sequence[Statement]) -> Program:
+    """The margin at a pose that forward kinematics has found."""
+    return assemble("singularity", statements, [Output(MARGIN, DETERMINANT)])
