@@ -35,7 +35,7 @@ def setup_body(kin: Kinematics) -> list[str]:
     lines: list[str] = []
     for statement in kin.setup.body:
         if isinstance(statement, Iterate):
-            raise NotImplementedError("a setup that iterates")
+            raise TypeError("what depends on parameters alone is straight-line: a setup program does not iterate")
         lines += _refusal(statement, inputs) if isinstance(statement, Require) else binding_lines(statement, _PRINTER)
     values = (f"{spelled(o.name)}={_PRINTER.print(o.value)}" for o in kin.setup.outputs)
     return [*lines, *fold(f"return Constants({', '.join(values)})")]
