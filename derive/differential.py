@@ -132,7 +132,7 @@ def singularity_program(
     exponents = _exponents(mechanism, draft, jacobian)
     kept = [(o, e) for o, e in zip(draft.outputs, exponents, strict=True) if e != 0]
     program = assemble("singularity", draft.body, [o for o, _ in kept])
-    return program, tuple(Margin(o.name, e, "type 1") for o, e in kept)
+    return program, tuple(Margin(o.name, e, "type 1" if e > 0 else "type 2") for o, e in kept)
 
 
 def _exponents(mechanism: Mechanism, margins: Program, jacobian: Program) -> list[int]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from itertools import product
 
+import numpy as np
+
 from derive.emit.st_names import capitalized
 from derive.mechanism import Mechanism
 from tests.execution import (
@@ -49,6 +51,9 @@ def test_every_statement_of_the_shared_objects_runs() -> None:
     libraries += [test_matrix_functions.misbehaving(name) for name in test_matrix_functions.BROKEN]
     statements = Statements(shared_texts(), libraries)
     with statements.watched():
+        for size in range(1, 7):
+            test_shared_functions.test_solve(size)
+        test_shared_functions.test_solve_where_nothing_solves(np.ones((3, 3)))
         for test in vars(test_shared_functions).values():
             if getattr(test, "__name__", "").startswith("test_") and not hasattr(test, "pytestmark"):
                 test()

@@ -144,3 +144,39 @@ def test_the_harness_would_notice_a_bad_operation() -> None:
     """Without its guard, a function faults: the tests above can fail."""
     with pytest.raises(StFault):
         LIBRARY.function("Softkin_Atan2")(math.nan, 1.0)
+
+
+def solved(matrix: np.ndarray, right: np.ndarray) -> tuple[float, np.ndarray]:
+    """The determinant, and the solution: arrays of six rows, whatever lies beyond the equations."""
+    size, columns = right.shape
+    tables = [[[math.nan] * 6 for _ in range(6)] for _ in range(2)]
+    for table, filled in zip(tables, (matrix, right), strict=True):
+        for row, values in enumerate(filled.tolist()):
+            table[row][: len(values)] = values
+    flat = [[value for row in table for value in row] for table in tables]
+    determinant = LIBRARY.function("Softkin_Solve")(*flat, size, columns)
+    return determinant, np.array(flat[1]).reshape(6, 6)[:size, :columns]
+
+
+@pytest.mark.parametrize("size", range(1, 7))
+def test_solve(size: int) -> None:
+    rng = np.random.default_rng(size)
+    for columns in (0, 1, 6):
+        for _ in range(20):
+            matrix, right = rng.normal(size=(size, size)), rng.normal(size=(size, columns))
+            determinant, solution = solved(matrix, right)
+            assert determinant == pytest.approx(np.linalg.det(matrix), rel=1e-9, abs=1e-12)
+            np.testing.assert_allclose(matrix @ solution, right, atol=1e-8)
+
+
+def test_solve_where_the_first_pivot_is_zero() -> None:
+    determinant, solution = solved(np.array([[0.0, 2.0], [4.0, 1.0]]), np.array([[2.0], [9.0]]))
+    assert determinant == -8.0
+    assert solution.tolist() == [[2.0], [1.0]]
+
+
+@pytest.mark.parametrize("matrix", [np.zeros((3, 3)), np.ones((3, 3))])
+def test_solve_where_nothing_solves(matrix: np.ndarray) -> None:
+    determinant, solution = solved(matrix, np.ones((3, 2)))
+    assert determinant == 0.0
+    assert not solution.any()

@@ -116,6 +116,8 @@ def _nearest(
             continue
         axes, outcome = programs.branch(position, rotation, signs, turns, reference)
         distance = sum(((axes[i] - reference[i]) ** 2 for i in robot.DISTANCE_AXES), np.zeros(len(outcome)))
+        is_number = np.logical_and.reduce([np.abs(reference[i]) <= 1e9 for i in robot.DISTANCE_AXES])
+        distance = np.where(is_number, distance, 0.0)
         is_better = (outcome == Status.OK) & ((status[rows] != Status.OK) | (distance < least[rows] - TIE))
         status[rows] = np.where(is_better | (status[rows] == _UNTRIED), outcome, status[rows])
         least[rows] = np.where(is_better, distance, least[rows])

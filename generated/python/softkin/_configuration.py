@@ -46,8 +46,13 @@ def period(axis: float) -> int:
 
 
 def squared_distance(axes: Reals, reference: Reals, counted: tuple[int, ...]) -> float:
-    """How far axes are from the reference: the sum of squared differences of the axes that count."""
+    """How far axes are from the reference: the sum of squared differences of the axes that count.
+
+    0 for a reference that is no number of reasonable size: then the first branch is as good as any.
+    """
     total = 0.0
+    if not all(abs(reference[i]) <= 1e9 for i in counted):
+        return total
     for i in counted:
         difference = axes[i] - reference[i]
         total += difference * difference

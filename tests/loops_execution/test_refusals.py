@@ -1,0 +1,81 @@
+"""Parameters that form no machine, numbers that are none, blocks that were not initialised: a status, outputs untouched."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.execution import test_garbage, test_initialise, test_not_initialised
+from tests.execution.controller import IMPOSSIBLE, NOT_INITIALIZED, OK, Controller
+from tests.execution.twins import Twins
+from tests.execution.units import compiled
+from tests.loops_execution.machines import Loop
+
+GARBAGE_TESTS = (
+    test_garbage.test_garbage_in_one_number,
+    test_garbage.test_garbage_in_every_number,
+    test_garbage.test_garbage_in_what_is_written,
+    test_garbage.test_garbage_in_axes_as_in_python,
+    test_garbage.test_garbage_in_a_command_as_in_python,
+    test_garbage.test_what_is_no_rotation,
+    test_garbage.test_a_small_error_of_a_rotation_is_allowed,
+    test_garbage.test_the_largest_numbers,
+)
+INITIALISE_TESTS = (test_initialise.test_every_parameter_is_checked, test_initialise.test_the_ends_of_a_range_belong_to_it)
+
+
+@pytest.mark.parametrize("test", GARBAGE_TESTS, ids=lambda test: test.__name__)
+def test_garbage_as_in_serial_machines(loops: tuple[Loop, ...], test: Callable[[tuple[Loop, ...]], None]) -> None:
+    test(loops[:2] * 2)
+
+
+@pytest.mark.parametrize("test", INITIALISE_TESTS, ids=lambda test: test.__name__)
+def test_parameters(loops: tuple[Loop, ...], test: Callable[[tuple[Loop, ...]], None]) -> None:
+    test(loops)
+
+
+@pytest.mark.parametrize("made", [test_not_initialised.fresh, test_not_initialised.refused])
+def test_no_method_works_before_initialize(loops: tuple[Loop, ...], made: Callable[[Twins], Controller]) -> None:
+    test_not_initialised.test_no_method_works(loops, made)
+
+
+def test_limits_are_in_order(loops: tuple[Loop, ...]) -> None:
+    for joint in loops[0].mechanism.joints:
+        for lower, upper, expected in ((10.0, 10.0, NOT_INITIALIZED), (10.0, -10.0, NOT_INITIALIZED), (-5.0, 10.0, OK)):
+            given = {**loops[0].robot.parameters, f"lower_{joint.key}": lower, f"upper_{joint.key}": upper}
+            assert Controller(loops[0].library, loops[0].mechanism).initialise(given) == expected
+
+
+def test_without_inputs_a_machine_is_refused(loops: tuple[Loop, ...]) -> None:
+    """Its lengths have no defaults."""
+    block = Controller(loops[0].library, loops[0].mechanism).block
+    assert block.call("Initialize") == NOT_INITIALIZED
+    assert not block.call("IsInitialized")
+
+
+@pytest.mark.parametrize("size", [36, 80])
+def test_a_matrix_of_another_size_is_refused(loops: tuple[Loop, ...], size: int) -> None:
+    controller = Controller(compiled(loops[0].mechanism, matrix_size=size), loops[0].mechanism)
+    assert controller.initialise(loops[0].robot.parameters) == NOT_INITIALIZED
+
+
+def test_the_other_storage_order(loops: tuple[Loop, ...]) -> None:
+    """Matrices by columns: the same answers."""
+    loop = loops[1]
+    controller = Controller(compiled(loop.mechanism, "columns"), loop.mechanism)
+    assert controller.initialise(loop.robot.parameters) == OK
+    for sample in loop.regular[:10]:
+        assert controller.forward(sample.axes) == loop.controller.forward(sample.axes)
+        position, rotation, data = loop.controller.forward(sample.axes)[1]
+        own = data[: len(sample.data)]
+        again = controller.inverse(position, rotation, own, sample.axes)
+        assert again == loop.controller.inverse(position, rotation, own, sample.axes)
+
+
+def test_a_loop_that_does_not_close_is_impossible(loops: tuple[Loop, ...]) -> None:
+    """And singular."""
+    for loop in loops:
+        statuses = [(loop.controller.forward(s.axes)[0], loop.controller.is_singular(s.axes)) for s in loop.any]
+        assert all(singular for status, singular in statuses if status != OK)
+        assert {status for status, _ in statuses} <= {OK, IMPOSSIBLE}
