@@ -17,7 +17,7 @@ Configuration:
 Singularities:
     stretched_1: type 1
     stretched_2: type 1
-    arms_aligned: type 1
+    arms_aligned: type 2
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

@@ -21,7 +21,7 @@ Singularities:
     stretched_1: type 1
     stretched_2: type 1
     stretched_3: type 1
-    rods_coplanar: type 1
+    rods_coplanar: type 2
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

@@ -15,7 +15,7 @@ Configuration:
 Singularities:
     upright_1: type 1
     upright_2: type 1
-    arms_aligned: type 1
+    arms_aligned: type 2
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

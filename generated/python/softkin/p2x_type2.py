@@ -13,7 +13,7 @@ Configuration:
 
 Singularities:
     meet_a2: type 1
-    flat: type 1
+    flat: type 2
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,

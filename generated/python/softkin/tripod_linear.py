@@ -18,7 +18,7 @@ Singularities:
     square_1: type 1
     square_2: type 1
     square_3: type 1
-    rods_coplanar: type 1
+    rods_coplanar: type 2
 
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
