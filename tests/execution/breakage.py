@@ -82,7 +82,7 @@ REFUSED = {
 
 FAULTS = {
     "a division by zero": Break(_BRANCH, "headingAlong/headingDivisor", "headingAlong/0.0", "division by zero"),
-    "a root of a negative": Break(_BRANCH, "reach := Softkin_Root(", "reach := SQRT(-", "SQRT of a negative"),
+    "a root of a negative": Break(_BRANCH, "reach := Softkin_Root(", "reach := SQRT(-1.0 - ", "SQRT of a negative"),
     "a product that overflows": Break(_FORWARD, "cosA1 := COS(a1)", "cosA1 := 1.0E200*COS(a1)*1.0E200", "not finite"),
     "an unused axis that is read": Break(_FORWARD, "a.a2 - offsetA3", "a.a2 - a.a4", "not finite"),
     "an integer that overflows": Break(_INVERSE, ":= slot MOD 2 + 1", ":= slot + 32767", "overflow"),

@@ -16,7 +16,7 @@ from tests.mechanisms.machines import Machine
 Reals = tuple[float, ...]
 Rows = tuple[Reals, ...]
 Bytes = tuple[int, ...]
-SAMPLES = 50
+SAMPLES = 40
 """Random samples of one machine."""
 NO_TURN: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 HALF_TURN: Rows = ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0))

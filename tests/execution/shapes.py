@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 
 _WORDS = re.compile(r"//[^\n]*|'[^'\n]*'|\b\d[\d.]*(?:E-?\d+)?\b|\b[A-Za-z_]\w*\b")
-_VARIABLE = re.compile(r"\w+ : [^;]*;\s*(//.*)?")
-_ASSIGNMENT = re.compile(r"[^;]*:=[^;]*;\s*(//.*)?")
-_BEFORE_A_STATEMENT = (";", "THEN", "ELSE", "DO", "END_IF", "END_FOR", "END_VAR")
+_ALONE = re.compile(r"VAR|METHOD|FUNCTION|PROPERTY|TYPE|GET|END_|\{|TRAFO\.")
+"""How lines begin that are no part of a statement."""
+_ENDS = (";", "THEN", "ELSE", "DO", "OF", ":")
+_VARIABLE = re.compile(r"\w+ : [^;]*;")
+_CONDITION = re.compile(r"(IF|ELSIF) .*THEN")
 _LONGEST_GROUP = 8
 """Lines in a group that may repeat: a condition with its refusal, a choice between two assignments."""
 
@@ -23,25 +25,38 @@ def names(text: str) -> set[str]:
 
 
 def abridged(text: str, seen: set[str]) -> str:
-    """The text without variables and assignments of a shape that is in `seen`, and the new ones are then in it.
+    """The text without what has a shape that is in `seen`, and the new shapes are then in it.
 
-    An empty statement stands for an assignment. Lines, or groups of lines, that repeat the shape of those before them
-    are left out too.
+    Variables are left out, an empty statement stands for a statement, a name for a condition. Lines, or groups of
+    lines, that repeat the shape of those before them are left out too, and comments.
     """
-    lines: list[str] = []
-    before = ""
-    for line in map(str.strip, text.split("\n")):
-        code = line.split("//")[0].rstrip()
-        if not code:
+    found: list[str] = []
+    for line in _statements(text):
+        is_old = shape(line) in seen
+        if not is_old or _ALONE.match(line):
+            found.append(line)
+        elif condition := _CONDITION.fullmatch(line):
+            found.append(f"{condition[1]} n THEN")
+        elif not _VARIABLE.fullmatch(line):
+            found.append(";" if line.endswith(";") else line)
+        seen.add(shape(line))
+    return _condensed(found)
+
+
+def _statements(text: str) -> list[str]:
+    """The text with every statement, variable and condition on a line of its own."""
+    found: list[str] = []
+    begun = ""
+    for code in filter(None, (line.split("//")[0].strip() for line in text.split("\n"))):
+        if _ALONE.match(code):
+            found += [begun, code]
+            begun = ""
             continue
-        is_variable, is_assignment = _VARIABLE.fullmatch(line), _ASSIGNMENT.fullmatch(line)
-        if is_variable or (is_assignment and before.endswith(_BEFORE_A_STATEMENT)):
-            is_old = shape(line) in seen
-            seen.add(shape(line))
-            line = "" if is_old and is_variable else ";" if is_old else line
-        lines.append(line)
-        before = code
-    return _condensed(list(filter(None, lines)))
+        begun = f"{begun} {code}".strip()
+        if begun.endswith(_ENDS):
+            found.append(begun)
+            begun = ""
+    return list(filter(None, [*found, begun]))
 
 
 def _condensed(given: list[str]) -> str:

@@ -26,7 +26,7 @@ from tests.execution.twins import Twins, twins_of
 from tests.execution.units import compiled, compiled_shared, file_of, shared_texts, text_of
 from tests.st.library import Library
 
-MACHINES = ("plain", "nominal", "equal", "limited", "limited to a turn")
+MACHINES = ("plain", "equal", "limited", "limited to a turn")
 FEW, FEW_OF_THE_GRID = 3, 25
 """The numbers of samples: a watched call takes its time."""
 

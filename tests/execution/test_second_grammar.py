@@ -75,5 +75,5 @@ def test_what_is_the_same_to_a_grammar() -> None:
     text += "x := y;  // so\n\nz := y;  // or so\nx := -y;"
     assert names(text) == {"a", "b2", "x", "y", "z"}
     seen: set[str] = set()
-    assert abridged(text, seen) == "IF a > 1.0 THEN\nRETURN;\nEND_IF\nx := y;  // so\n;\nx := -y;"
-    assert abridged(text, seen) == "IF a > 1.0 THEN\nRETURN;\nEND_IF\n;"
+    assert abridged(text, seen) == "IF a > 1.0 THEN\nRETURN;\nEND_IF\nIF n THEN\n;\nEND_IF\nx := y;\n;\nx := -y;"
+    assert abridged(text + "\nx := y\n  + x;", seen) == "IF n THEN\n;\nEND_IF\n;\nx := y + x;"
