@@ -9,13 +9,14 @@ import sympy as sp
 
 from derive.algebra import polynomial
 from derive.closure import all_angles, signs_of, with_fixed_angles
-from derive.forward import ASSEMBLY_SIGN, Forward, named_trigonometry
+from derive.forward import ASSEMBLY_SIGN, Forward
 from derive.mechanism import DescriptionError, Mechanism
 from derive.parameters import MIN_TYPE2_MARGIN
 from derive.passes import assemble
 from derive.program import Let, Output, Require, Select, Statement, Status, real
 from derive.run import run
 from derive.sampling import sample_axes, sample_machine
+from derive.trigonometry import named_trigonometry
 
 _SAMPLES = 256
 

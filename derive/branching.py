@@ -10,7 +10,7 @@ import sympy as sp
 
 from derive.algebra import reduce_units
 from derive.closure import all_angles, with_fixed_angles
-from derive.forward import Forward, derivation_at_axes, named_trigonometry
+from derive.forward import Forward, derivation_at_axes
 from derive.inverse import Inverse
 from derive.mechanism import Branch, DescriptionError, Mechanism
 from derive.passes import assemble
@@ -18,6 +18,7 @@ from derive.problem import Slope
 from derive.program import Let, Output, Statement, Status, real, rewritten
 from derive.run import run
 from derive.sampling import sample_axes, sample_machine
+from derive.trigonometry import named_trigonometry
 
 _SAMPLES = 64
 

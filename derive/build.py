@@ -16,7 +16,6 @@ from derive.forward import (
     Forward,
     derivation_at_axes,
     forward_program,
-    named_trigonometry,
     orientation_program,
     pose_at_axes,
 )
@@ -31,12 +30,14 @@ from derive.pose import pose_of
 from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real
 from derive.shared_names import refuse_shared_names
 from derive.solve import Unsolved
+from derive.splits import is_spatial
+from derive.trigonometry import named_trigonometry
 
 
 def build(mechanism: Mechanism) -> Kinematics:
     """Derive everything. Raises `Unsolved` or `DescriptionError` where the description does not allow it."""
     _count(mechanism)
-    if mechanism.task.turning is Turning.FULL:
+    if mechanism.is_platform:
         return _platform(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
     forward = closed.forward
@@ -215,14 +216,15 @@ def _freedom(mechanism: Mechanism) -> Freedom:
     if mechanism.chain is None:
         return Freedom.ZERO
     joints = {j.symbol for j in mechanism.joints}
-    return Freedom.ONE if pose_of(mechanism.chain).rotation.free_symbols & joints else Freedom.ZERO
+    turns = [t for t in pose_of(mechanism.chain).turns if t.amount.free_symbols & joints]
+    return Freedom.ZERO if not turns else Freedom.THREE if is_spatial(mechanism.chain) else Freedom.ONE
 
 
 def _image_program(mechanism: Mechanism) -> Program:
     """All orientations of the flange: one of them, and the axis about which it turns, in both frames."""
     zero = sp.eye(3)
     axis = sp.Matrix([0, 0, 1])
-    if mechanism.chain is not None:
+    if mechanism.chain is not None and _freedom(mechanism) is not Freedom.THREE:
         zero = sp.Matrix(pose_of(mechanism.chain).rotation)
         if _freedom(mechanism) is Freedom.ONE:
             heading_of(mechanism.chain)  # refuses a chain whose rotation is not one turn about z

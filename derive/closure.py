@@ -7,7 +7,7 @@ known angle `heading`, through its sine and cosine.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -17,8 +17,10 @@ from derive.mechanism import DescriptionError, Joint, Mechanism, Rod, Role, Turn
 from derive.pose import pose_of
 from derive.problem import Equation
 from derive.program import DEGREE, Let, real
+from derive.splits import Unknowns, is_spatial, split_positions
 
 COORDINATES = ("x", "y", "z")
+ROTATION_ENTRIES = tuple(real(f"r{i}{j}") for i in (1, 2, 3) for j in (1, 2, 3))
 HEADING = real("heading")
 OFFSET = tuple(real(f"point_{c}") for c in COORDINATES)
 """The point off the flange, in flange coordinates."""
@@ -34,6 +36,8 @@ class Closure:
     lets: tuple[Let, ...] = ()
     plane: sp.Expr | None = None
     """The z that a planar machine has."""
+    turns: tuple[Factor, ...] = ()
+    """The turns whose product is the commanded rotation, where the whole of it is followed."""
 
 
 def signs_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
@@ -88,6 +92,8 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     """The closure of a commanded pose."""
     if mechanism.chain is None:
         return _stated_closure(mechanism, {})
+    if is_spatial(mechanism.chain):
+        return _spatial_closure(mechanism, mechanism.chain, mechanism.joints)
     pose = pose_of(mechanism.chain)
     closure = _position_closure(mechanism, pose.position)
     if mechanism.task.turning is Turning.NONE:
@@ -99,6 +105,18 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     )
     arguments = tuple(dict.fromkeys((*closure.arguments, argument)))
     return Closure(closure.equations + turns, arguments, closure.lets, closure.plane)
+
+
+def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ...]) -> Closure:
+    """A chain that turns about several axes: its position equations are split, its rotation is left to the solver."""
+    angles, lengths = (tuple(j.symbol for j in moving if j.is_angle is kind) for kind in (True, False))
+    unknowns = Unknowns(angles, lengths, all_angles(mechanism), signs_of(mechanism))
+    follows = mechanism.task.turning is Turning.FULL
+    rotation = sp.Matrix(3, 3, ROTATION_ENTRIES) if follows else None
+    equations = split_positions(chain, rotation, unknowns) if mechanism.task.position else ()
+    pose = pose_of(chain)
+    arguments = dict.fromkeys((*_arguments(pose.position), *(t.amount for t in pose.turns)))
+    return Closure(equations, tuple(arguments), turns=pose.turns if follows else ())
 
 
 def heading_of(chain: Chain) -> sp.Expr:
@@ -120,7 +138,10 @@ def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
     tool = pose_of(Chain(factors[last + 1 :])).position
     lets: list[Let] = []
     entries = [_named_tool(mechanism, entry, f"tool_{c}", symbols, lets) for entry, c in zip(tool, COORDINATES, strict=True)]
-    pose = pose_of(Chain(factors[: last + 1]) * Txyz(*entries))
+    seen = Chain(factors[: last + 1]) * Txyz(*entries)
+    if is_spatial(mechanism.chain):
+        return replace(_spatial_closure(mechanism, seen, unknown), lets=tuple(lets))
+    pose = pose_of(seen)
     closure = _position_closure(mechanism, pose.position)
     return Closure(closure.equations, closure.arguments, tuple(lets), closure.plane)
 

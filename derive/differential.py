@@ -9,9 +9,9 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.closure import with_fixed_angles
-from derive.forward import Forward, named_trigonometry
-from derive.frames import Motion
+from derive.closure import COORDINATES, with_fixed_angles
+from derive.forward import Forward
+from derive.frames import Chain, Motion
 from derive.kinematics import Margin
 from derive.mechanism import DescriptionError, Mechanism, Turning
 from derive.parameters import SCALE
@@ -21,7 +21,11 @@ from derive.pose import Screw, pose_of
 from derive.program import FREE_ANGLE, Let, Output, Program, Require, Select, Statement, Status, real
 from derive.run import run
 from derive.sampling import sample_axes, sample_machine
+from derive.splits import is_spatial
+from derive.trigonometry import named_trigonometry
+from derive.walk import walk
 
+_ROWS = ("x", "y", "z", "turn x", "turn y", "turn z")
 _TURNS = {Turning.NONE: (), Turning.ABOUT_Z: ("turn z",), Turning.FULL: ("turn x", "turn y", "turn z")}
 
 
@@ -33,12 +37,13 @@ def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
 def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
     """Rows of the task by axes; rotary axes per radian."""
     width = len(mechanism.joints)
-    if mechanism.task.turning is Turning.FULL:
+    if mechanism.is_platform:
         solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
         return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, width))
     matrix, naming = (_by_screws(mechanism), ()) if mechanism.chain is not None else _by_closure(mechanism)
     coupled = matrix * _motor_matrix(mechanism)
-    entries = [sp.expand_mul(e) if mechanism.chain is not None else e for e in coupled]
+    planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
+    entries = [sp.expand_mul(e) if planar else e for e in coupled]
     lets, values = named_trigonometry(mechanism, entries)
     return assemble("jacobian", (*forward.statements, *naming, *lets), _entries_of(values, width))
 
@@ -50,18 +55,26 @@ def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:
 def _by_screws(mechanism: Mechanism) -> sp.Matrix:
     """A serial chain: every factor moves the end as a screw (z × p), scaled by how each joint moves the factor."""
     assert mechanism.chain is not None
-    pose = pose_of(mechanism.chain)
+    screws, position = _screws(mechanism, mechanism.chain)
     columns = []
     for joint in mechanism.joints:
         column = sp.zeros(6, 1)
-        for screw in pose.screws:
+        for screw in screws:
             rate = sp.diff(screw.amount, joint.symbol)
             if rate != 0:
-                column += rate * _twist(screw, pose.position)
+                column += rate * _twist(screw, position)
         columns.append(column)
     full = sp.Matrix.hstack(*columns)
-    chosen = ["xyz".index(c) for c in mechanism.task.position]
-    return full.extract(chosen + ([5] if mechanism.task.turning is Turning.ABOUT_Z else []), list(range(full.cols)))
+    chosen = [_ROWS.index(row) for row in jacobian_rows(mechanism)]
+    return full.extract(chosen, list(range(full.cols)))
+
+
+def _screws(mechanism: Mechanism, chain: Chain) -> tuple[tuple[Screw, ...], sp.ImmutableMatrix]:
+    """The screws of a chain and the place of its end; of a chain in space in the names of its frames."""
+    if is_spatial(chain):
+        return walk(mechanism).screws, sp.ImmutableMatrix([real(c) for c in COORDINATES])
+    pose = pose_of(chain)
+    return pose.screws, pose.position
 
 
 def _twist(screw: Screw, position: sp.ImmutableMatrix) -> sp.Matrix:

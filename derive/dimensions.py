@@ -15,6 +15,8 @@ class Role(Enum):
     """What a parameter is: decides unit, type and default."""
 
     LENGTH = "length"
+    SIGNED_LENGTH = "signed length"
+    """A length that may be negative, but not zero."""
     DISTANCE = "distance"
     """A length that may be zero or negative."""
     PITCH = "pitch"
@@ -59,6 +61,12 @@ def optional_length(name: str, meaning: str, *, nominal: float, high: float = 1e
     """A length that may be zero, and is when not given."""
     symbol = sp.Symbol(name, nonnegative=True)
     return Parameter(symbol, name, Role.DISTANCE, meaning, "u", 0.0, high, False, 0.0, nominal)
+
+
+def signed_length(name: str, meaning: str, *, nominal: float) -> Parameter:
+    """A length of either sign, as in tables of Denavit-Hartenberg parameters: it must be given and not be zero."""
+    symbol = sp.Symbol(name, real=True, nonzero=True)
+    return Parameter(symbol, name, Role.SIGNED_LENGTH, meaning, "u", -1e9, 1e9, False, None, nominal)
 
 
 def pitch(name: str, meaning: str, *, nominal: float, low: float = -1e9, high: float = 1e9) -> Parameter:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import sympy as sp
 
 from derive.algebra import cosine, sine
+from derive.closure import ROTATION_ENTRIES as ROTATION_ENTRIES
 from derive.mechanism import Joint, Mechanism
 from derive.program import (
     DEGREE,
@@ -21,8 +22,6 @@ from derive.program import (
     Status,
     real,
 )
-
-ROTATION_ENTRIES = tuple(real(f"r{i}{j}") for i in (1, 2, 3) for j in (1, 2, 3))
 
 
 def finite(symbols: Sequence[sp.Symbol]) -> tuple[Require, ...]:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.algebra import cosine, polynomial, sine
+from derive.algebra import cosine, sine
 from derive.closure import (
     COORDINATES,
     HEADING,
@@ -18,7 +17,6 @@ from derive.closure import (
     position_closure,
     signs_of,
 )
-from derive.composite import name_of, terms_of
 from derive.edges import ROTATION_ENTRIES, finite, frozen_lets, joint_lets
 from derive.inverse import Inverse
 from derive.mechanism import DescriptionError, Mechanism, Turning
@@ -28,6 +26,9 @@ from derive.pose import pose_of
 from derive.problem import Problem, Slope
 from derive.program import BOUNDARY, LIMIT, Let, Output, Program, Require, Select, Statement, Status, real, rewritten
 from derive.solve import Derivation, solve
+from derive.splits import is_spatial
+from derive.trigonometry import named_trigonometry
+from derive.walk import walk
 
 ASSEMBLY_SIGN = real("assembly_sign")
 """The sign of the forward slope in this machine's assembly mode."""
@@ -47,6 +48,8 @@ class Forward:
 def pose_at_axes(mechanism: Mechanism) -> Forward:
     """The pose of a mechanism at its axis values; quantities that must be positive are required to be."""
     checks = (*finite([j.axis for j in mechanism.joints]), *joint_lets(mechanism), *_positive(mechanism))
+    if mechanism.chain is not None and is_spatial(mechanism.chain):
+        return _walked(mechanism, checks)
     if mechanism.chain is not None:
         pose = pose_of(mechanism.chain)
         lets, values = named_trigonometry(mechanism, [*pose.position, *pose.rotation])
@@ -59,6 +62,14 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
     known = (*checks, *fixed_angle_lets(mechanism), *trigonometric, *_in_assembly_mode(derivation, mechanism))
     position_values = tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATES)
     return Forward(known, position_values, tuple(sp.eye(3)), slope)
+
+
+def _walked(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forward:
+    """The pose of a chain that turns about several axes, frame by frame."""
+    walked = walk(mechanism)
+    names = (*(real(c) for c in COORDINATES), *ROTATION_ENTRIES)
+    pose = tuple(Let(n, v) for n, v in zip(names, (*walked.position, *walked.rotation), strict=True))
+    return Forward((*checks, *walked.statements, *pose), names[:3], names[3:])
 
 
 def _solve_for_position(mechanism: Mechanism) -> Derivation:
@@ -112,25 +123,6 @@ def _domains(mechanism: Mechanism) -> tuple[Require, ...]:
     return tuple(checks)
 
 
-def named_trigonometry(mechanism: Mechanism, values: Iterable[sp.Expr]) -> tuple[tuple[Let, ...], list[sp.Expr]]:
-    """The values with every sine and cosine under its name (`cos_a12`), and these names bound."""
-    values = [sp.sympify(v) for v in values]
-    lets: dict[sp.Symbol, Let] = {}
-    table: dict[sp.Expr, sp.Expr] = {}
-    angles = angles_of(mechanism)
-    for function in sorted(sp.Matrix(values).atoms(sp.sin, sp.cos), key=sp.default_sort_key):
-        terms = terms_of(sp.expand(function.args[0]), angles)
-        word = "sin" if isinstance(function, sp.sin) else "cos"
-        if terms is None:
-            table[function] = polynomial(function, angles, signs_of(mechanism))
-            lets.update({f(a): Let(f(a), g(a)) for a in angles for f, g in ((sine, sp.sin), (cosine, sp.cos))})
-        else:
-            name = real(f"{word}_{name_of(terms)}")
-            table[function] = name
-            lets[name] = Let(name, function)
-    return tuple(lets.values()), [v.xreplace(table) for v in values]
-
-
 def forward_program(mechanism: Mechanism, forward: Forward, margins: tuple[Let, ...]) -> Program:
     """Position, rotation, and the signed margin of every branch."""
     outputs = [Output(c, v) for c, v in zip(COORDINATES, forward.position, strict=True)]
@@ -175,6 +167,6 @@ def _angle_values(mechanism: Mechanism, inverse: Inverse) -> dict[sp.Symbol, sp.
     table: dict[sp.Symbol, sp.Expr] = {a: a for a in angles_of(mechanism)}
     for total in inverse.derivation.sums:
         table[total.symbol] = sp.Add(*[table[a] * s for a, s in total.terms])
-    if mechanism.chain is not None and mechanism.task.turning is not Turning.NONE:
+    if mechanism.chain is not None and mechanism.task.turning is Turning.ABOUT_Z:
         table[HEADING] = heading_of(mechanism.chain)
     return table

@@ -108,3 +108,9 @@ def Txyz(x: object, y: object, z: object) -> Chain:
 def flip_x(flag: object) -> Chain:
     """Half a turn about x where the flag parameter is set (a flange that looks down)."""
     return _one(Motion.FLIP, 0, flag)
+
+
+def denavit_hartenberg(*rows: tuple[object, object, object, object]) -> Chain:
+    """A chain by its table, a row a joint: angle about z, distance along z, length along x, twist about x (angles in radians)."""
+    factors = (f for angle, d, a, twist in rows for f in (Rz(angle) * Tz(d) * Tx(a) * Rx(twist)).factors)
+    return Chain(tuple(f for f in factors if f.amount != 0))

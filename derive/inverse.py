@@ -81,6 +81,8 @@ def _solve(mechanism: Mechanism, closure: Closure, moving: tuple[Joint, ...]) ->
         free={j.symbol: free(j) for j in mechanism.joints},
         scale=SCALE,
         signs=signs_of(mechanism),
+        turns=closure.turns,
+        rotation=ROTATION_ENTRIES if closure.turns else (),
         positive=tuple(polynomial(p, all_angles(mechanism), signs_of(mechanism)) for p in mechanism.positive),
     )
     return solve(problem, closure.arguments, lambda angle: (*axis_lets(joints[angle]), plain_angle(joints[angle])))

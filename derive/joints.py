@@ -100,9 +100,12 @@ class JointDetails(TypedDict, total=False):
     nominal: float
 
 
-def rotary(name: str, meaning: str, **details: Unpack[JointDetails]) -> Joint:
-    """A rotary joint with a period byte: its type allows more than 360 degrees."""
-    return Joint(_joint_symbol(name), name, Kind.ROTARY, meaning, multi_turn=True, **details)
+def rotary(name: str, meaning: str, *, value: str | None = None, **details: Unpack[JointDetails]) -> Joint:
+    """A rotary joint with a period byte: its type allows more than 360 degrees.
+
+    `value` is what equations call the joint's value, where a length of the machine has the axis' name.
+    """
+    return Joint(_joint_symbol(value or name), name, Kind.ROTARY, meaning, multi_turn=True, **details)
 
 
 def arc(name: str, meaning: str, **details: Unpack[JointDetails]) -> Joint:

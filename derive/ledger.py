@@ -42,7 +42,7 @@ class Ledger:
         names = self._write(binding.statements, keep={f(u) for u in binding.unknowns for f in (sine, cosine)})
         binding = replace(
             binding,
-            slope=None if binding.slope is None else replace(binding.slope, value=binding.slope.value.xreplace(names)),
+            slope=None if binding.slope is None else _renamed(binding.slope, names),
             measure=None
             if binding.measure is None
             else replace(binding.measure, value=binding.measure.value.xreplace(names)),
@@ -89,3 +89,8 @@ class Ledger:
             name = f"{proposal.name}_{number}"
         self._names.add(name)
         return proposal if name == proposal.name else real(name)
+
+
+def _renamed(slope: Slope, names: Mapping[sp.Symbol, sp.Expr]) -> Slope:
+    reach = None if slope.reach is None else (slope.reach[0].xreplace(names), slope.reach[1].xreplace(names))
+    return replace(slope, value=slope.value.xreplace(names), reach=reach)

@@ -28,6 +28,7 @@ from derive.dimensions import (
     pitch,
     radians,
     sign,
+    signed_length,
 )
 from derive.frames import Chain
 from derive.joints import COORDINATE_NAMES, Interval, Joint, Kind, arc, helical, linear, rotary
@@ -85,6 +86,7 @@ __all__ = [
     "rod",
     "rotary",
     "sign",
+    "signed_length",
 ]
 
 
@@ -235,6 +237,11 @@ class Mechanism:
         object.__setattr__(self, "positive", tuple(sp.sympify(v) for v in self.positive))
         object.__setattr__(self, "closure", tuple(sp.sympify(v) for v in self.closure))
         object.__setattr__(self, "home", tuple(sp.sympify(v) for v in self.home))
+
+    @property
+    def is_platform(self) -> bool:
+        """Whether this is a plate that follows the whole commanded pose: forward kinematics iterates."""
+        return self.chain is None and self.task.turning is Turning.FULL
 
     @property
     def equations(self) -> tuple[sp.Expr, ...]:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
-from derive.forward import Forward, named_trigonometry
+from derive.forward import Forward
 from derive.mechanism import Mechanism
 from derive.platform import (
     ANGLES,
@@ -48,6 +48,7 @@ from derive.program import (
     Status,
     real,
 )
+from derive.trigonometry import named_trigonometry
 
 LIMIT = 20
 """Passes of the loop: from the neighbouring pose it takes four."""

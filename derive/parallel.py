@@ -17,6 +17,8 @@ from derive.composite import Terms, composite, terms_of
 from derive.problem import Binding, Equation, Problem
 from derive.program import Let
 
+_FUNCTIONS = ((cosine, sp.cos), (sine, sp.sin))
+
 
 @dataclass(frozen=True)
 class Sum:
@@ -63,7 +65,8 @@ def substitute(problem: Problem, total: Sum) -> Problem:
     free = {**problem.free, total.symbol: sp.Add(*[problem.free[a] * s for a, s in total.terms])}
     equations = tuple(through_sum(e) for e in problem.equations)
     pending = (*problem.pending, total.replaced)
-    return replace(problem, angles=angles, units=units, equations=equations, free=free, pending=pending)
+    turns = tuple(replace(t, amount=sp.expand(t.amount.xreplace({total.replaced: form}))) for t in problem.turns)
+    return replace(problem, angles=angles, units=units, equations=equations, free=free, pending=pending, turns=turns)
 
 
 def resolve(problem: Problem, total: Sum) -> Binding | None:
@@ -71,11 +74,13 @@ def resolve(problem: Problem, total: Sum) -> Binding | None:
     awaited = (total.symbol, *(a for a, _ in total.terms if a != total.replaced))
     if any(a in (*problem.angles, *problem.pending) for a in awaited):
         return None
-    units = (*problem.units, total.replaced)
     note = f"{total.replaced.name}: what the sum {total.symbol.name} leaves"
-    form = total.replacement()
-    lets = (
-        Let(cosine(total.replaced), polynomial(sp.cos(form), units, ()), note),
-        Let(sine(total.replaced), polynomial(sp.sin(form), units, ())),
-    )
-    return Binding("sum", (total.replaced,), lets)
+    sign = dict(total.terms)[total.replaced]
+    others = tuple((a, s) for a, s in total.terms if a != total.replaced)
+    rest = composite(others) if len(others) > 1 else others[0][0]
+    form = (total.symbol - rest * (others[0][1] if len(others) == 1 else 1)) * sign
+    units = (*problem.units, total.replaced, rest)
+    amount = sp.Add(*[a * s for a, s in others])
+    named = [Let(f(rest), polynomial(g(amount), units, ())) for f, g in _FUNCTIONS] if len(others) > 1 else []
+    lets = tuple(Let(f(total.replaced), polynomial(g(form), units, ())) for f, g in _FUNCTIONS)
+    return Binding("sum", (total.replaced,), (*named, replace(lets[0], note=note), *lets[1:]))

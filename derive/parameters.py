@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import sympy as sp
 
-from derive.mechanism import Joint, Mechanism, Parameter, Role, Turning
+from derive.mechanism import Joint, Mechanism, Parameter, Role
 from derive.passes import bare
 from derive.platform import MIN_TYPE2_MARGIN as MIN_TYPE2_MARGIN
 from derive.platform import SCALE as SCALE
@@ -39,7 +39,7 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
 
 def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
     """The assembly mode of a closed loop, and how near to losing the plate it may come."""
-    if mechanism.task.turning is Turning.FULL:
+    if mechanism.is_platform:
         return [_least_margin()]
     if mechanism.assembly is None:
         return []
@@ -81,7 +81,7 @@ def setup_program(mechanism: Mechanism, parameters: tuple[Parameter, ...], hoist
     for quantity in mechanism.limited:
         body += [_ordered(quantity.name), *_limits(quantity.name, ())]
         outputs += _limit_outputs(quantity.name)
-    if mechanism.task.turning is Turning.FULL:
+    if mechanism.is_platform:
         body += machine_statements(mechanism)
         outputs += [Output(n.name, n) for n in machine_constants(mechanism)]
     else:
@@ -95,8 +95,9 @@ def setup_program(mechanism: Mechanism, parameters: tuple[Parameter, ...], hoist
 
 def machine_scale(parameters: Iterable[Parameter]) -> sp.Expr:
     """The sum of the lengths of the description; one user's unit where there is none."""
-    own = [p for p in parameters if p.role is Role.LENGTH or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)]
-    return sp.Add(*[p.symbol for p in own]) if any(p.role is Role.LENGTH for p in own) else sp.Integer(1)
+    lengths = (Role.LENGTH, Role.SIGNED_LENGTH)
+    own = [p for p in parameters if p.role in lengths or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)]
+    return sp.Add(*[sp.Abs(p.symbol) for p in own]) if any(p.role in lengths for p in own) else sp.Integer(1)
 
 
 def _range_of(parameter: Parameter) -> tuple[Require, ...]:
@@ -109,6 +110,9 @@ def _range_of(parameter: Parameter) -> tuple[Require, ...]:
     bare = real(parameter.name)  # without assumptions: SymPy must not decide `length > 0` by itself
     low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
     high = sp.Float(parameter.high) if parameter.high % 1 else sp.Integer(int(parameter.high))
+    if parameter.role is Role.SIGNED_LENGTH:
+        inside = sp.And(sp.Gt(sp.Abs(bare), 0), sp.Le(sp.Abs(bare), min(high, LARGEST)))
+        return (Require(inside, Status.NOT_INITIALIZED, note),)
     above = sp.Gt(bare, low) if parameter.low_open else sp.Ge(bare, low)
     return (Require(sp.And(above, sp.Le(bare, min(high, LARGEST))), Status.NOT_INITIALIZED, note),)
 

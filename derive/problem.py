@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import sympy as sp
 
 from derive.algebra import cosine, reduce_units, sine
+from derive.frames import Factor
 from derive.program import Let, Statement
 
 
@@ -20,6 +21,8 @@ class Equation:
     lets: tuple[Let, ...] = ()
     scales: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
     """The largest slope by an unknown, where it is made of parameters alone: margins are over it."""
+    is_length: bool = True
+    """Whether its terms are lengths; those of a rotation are numbers."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +33,8 @@ class Slope:
     value: sp.Expr
     """Equals sigma times something not negative at every solution."""
     scale: sp.Expr
+    reach: tuple[sp.Expr, sp.Expr] | None = None
+    """(h, e) where the step has solutions for |e| <= h, for partial steps before it."""
 
 
 @dataclass(frozen=True)
@@ -85,8 +90,16 @@ class Problem:
     """Normal forms of the quantities whose negative mirror is excluded."""
     pending: tuple[sp.Symbol, ...] = ()
     """Angles that follow from a sum once its other terms are known: unknown, but nothing to solve for."""
+    turns: tuple[Factor, ...] = ()
+    """The turns that the commanded rotation is the product of, for equations that are written when angles are known."""
+    rotation: tuple[sp.Symbol, ...] = ()
+    """The entries of the commanded rotation, by rows; none where it is not commanded."""
     definitions: Mapping[sp.Symbol, sp.Expr] | None = None
     """What known names stand for, as far as they are polynomials: for tests of zero."""
+
+    def scale_of(self, equation: Equation) -> sp.Expr:
+        """What the terms of an equation are compared with: a length of the machine, or one."""
+        return self.scale if equation.is_length else sp.Integer(1)
 
     def atoms(self) -> tuple[sp.Symbol, ...]:
         """Every symbol that is unknown: lengths, angles, their sines and cosines."""

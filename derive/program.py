@@ -27,6 +27,8 @@ FREE_ANGLE = sp.Float("1e-11")
 """A scaled measure at or below this leaves its angle free, and a branch byte reads 3."""
 BOUNDARY = sp.Float("1e-12")
 """A normalised radicand negative by at most this is zero: the boundary belongs to the workspace."""
+ROUNDING = sp.Float("1e-12")
+"""A motion of the pose smaller than this share of the machine is rounding."""
 LARGEST = sp.Integer(10) ** 9
 """Inputs larger in size than this are refused."""
 ROTATION = sp.Float("1e-6")

@@ -10,11 +10,13 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.arcs import within_reach
 from derive.consequences import differences, eliminations, squares
 from derive.ledger import Ledger
 from derive.parallel import Sum, candidate_sums, resolve, substitute
 from derive.problem import Binding, Equation, Measure, Problem, Slope
 from derive.program import Statement
+from derive.splits import rotations
 from derive.subproblems.affine import affine
 from derive.subproblems.affine_pair import affine_pair
 from derive.subproblems.pair import pair
@@ -25,7 +27,13 @@ from derive.subproblems.trigonometric import trigonometric
 
 Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
 RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)
-TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (lambda p: p.equations, differences, eliminations, squares)
+
+
+def _stated(problem: Problem) -> tuple[Equation, ...]:
+    return problem.equations + rotations(problem)
+
+
+TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (_stated, differences, eliminations, squares)
 Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
 
 
@@ -63,7 +71,8 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
             if angle not in problem.lengths:
                 ledger.append(resolve_angle(angle))
         problem = _without(problem, binding, ledger)
-    return Derivation(ledger.statements, ledger.slopes, ledger.measures, tuple(rules), sums)
+    statements = within_reach(ledger.statements, ledger.slopes, ledger.measures)
+    return Derivation(statements, ledger.slopes, ledger.measures, tuple(rules), sums)
 
 
 def _next(

@@ -22,13 +22,14 @@ def direction(
     measure: sp.Expr,
     note: str,
     is_length: bool = False,
+    scale: sp.Expr | None = None,
 ) -> tuple[Statement, ...]:
     """Bind cosine and sine of the angle; `measure` decides whether they are determined.
 
-    `is_length`: the measure is the length of (along, across) itself.
+    `is_length`: the measure is the length of (along, across) itself. `scale`: what it is compared with, a length of the machine.
     """
-    determined = sp.Gt(measure, FREE_ANGLE * problem.scale)
-    free = _free(problem, angle)
+    determined = sp.Gt(measure, FREE_ANGLE * (problem.scale if scale is None else scale))
+    cos_free, sin_free = free_angle(problem, angle)
     names = [real(f"{word}_{angle.name}") for word in ("along", "across", "length")]
     cos_name, sin_name, length = names
     square = cos_name**2 + sin_name**2
@@ -37,9 +38,15 @@ def direction(
         Let(cos_name, along, note),
         Let(sin_name, across),
         Let(length, Select(long_enough, measure if is_length else Root(square), sp.Integer(1))),
-        Let(cosine(angle), Select(determined, cos_name / length, sp.cos(free)), "its reference where it is free"),
-        Let(sine(angle), Select(determined, sin_name / length, sp.sin(free))),
+        Let(cosine(angle), Select(determined, cos_name / length, cos_free), "its reference where it is free"),
+        Let(sine(angle), Select(determined, sin_name / length, sin_free)),
     )
+
+
+def free_angle(problem: Problem, angle: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """Cosine and sine of the angle where nothing determines it."""
+    free = _free(problem, angle)
+    return sp.cos(free), sp.sin(free)
 
 
 def _free(problem: Problem, angle: sp.Symbol) -> sp.Expr:

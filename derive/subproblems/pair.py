@@ -59,8 +59,9 @@ def _solve(problem: Problem, angle: sp.Symbol, used: tuple[Equation, Equation], 
         if slope == sense:
             return _bound(angle, naming, cos_part, sin_part, note)
         reach = naming.length("reach", e1, e2)
-        known = direction(problem, angle, along=cos_part, across=sin_part, measure=reach, note=note)
-        return Binding("pair", (angle,), (*naming.lets, *known), measure=Measure(angle, reach, problem.scale))
+        scale = problem.scale_of(used[0])
+        known = direction(problem, angle, along=cos_part, across=sin_part, measure=reach, note=note, scale=scale)
+        return Binding("pair", (angle,), (*naming.lets, *known), measure=Measure(angle, reach, scale))
     if not problem.is_never_zero(slope):
         return None
     inverse = slope if slope**2 in (1, *(s**2 for s in problem.signs)) else 1 / slope  # ±1 is its own inverse

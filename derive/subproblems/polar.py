@@ -61,21 +61,24 @@ def _solve(
     sigma, slope = sp.Integer(1), None
     if not _is_positive(problem, radius):
         sigma = real(f"sigma_{angle.name}")
-        slope = Slope(sigma, radius, problem.scale)
-    known = direction(problem, angle, along=sigma * a, across=sigma * b, measure=distance, note=note, is_length=True)
-    measure = _measure(problem, angle, radius, distance)
+        slope = Slope(sigma, radius, problem.scale_of(along[0]))
+    known = direction(
+        problem, angle, along=sigma * a, across=sigma * b, measure=distance, note=note, is_length=True,
+        scale=problem.scale_of(along[0]),
+    )
+    measure = _measure(problem, angle, radius, distance, problem.scale_of(along[0]))
     if radius in problem.lengths:
         statements = (*naming.lets, Let(radius, sigma * distance), *known)
         return Binding("polar", (radius, angle), statements, slope, measure)
-    product = Equation(f"{angle.name} radius", radius - sigma * distance)
+    product = Equation(f"{angle.name} radius", radius - sigma * distance, is_length=along[0].is_length)
     return Binding("polar", (angle,), (*naming.lets, *known), slope, measure, (product,))
 
 
-def _measure(problem: Problem, angle: sp.Symbol, radius: sp.Expr, distance: sp.Expr) -> Measure:
+def _measure(problem: Problem, angle: sp.Symbol, radius: sp.Expr, distance: sp.Expr, scale: sp.Expr) -> Measure:
     """Of a product such as r sin(phi) the sine alone, a number without a unit: the step that finds r has its own measure."""
     functions = [f for f in sp.Mul.make_args(radius) if f not in problem.lengths and f.is_Symbol]
     if len(functions) == 0 or len(functions) == len(sp.Mul.make_args(radius)):
-        return Measure(angle, distance, problem.scale)
+        return Measure(angle, distance, scale)
     return Measure(angle, sp.Mul(*functions), sp.Integer(1))
 
 

@@ -17,6 +17,7 @@ import sympy as sp
 from derive.algebra import cosine, linear_coefficients, sine
 from derive.problem import Binding, Equation, Problem, Slope
 from derive.program import BOUNDARY, SHORTEST_LINK, Let, Require, Root, Select, Statement, Status, real
+from derive.subproblems.lateral import aimed_at_point
 from derive.subproblems.naming import Naming
 
 
@@ -28,10 +29,20 @@ def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator
             continue
         angle = unknowns[0]
         linear = linear_coefficients(equation.expression, (cosine(angle), sine(angle)))
-        if linear is not None:
-            (a, b), rest = linear
-            flip = -1 if (a if a != 0 else b).could_extract_minus_sign() else 1
+        if linear is None:
+            continue
+        (a, b), rest = linear
+        flip = -1 if (a if a != 0 else b).could_extract_minus_sign() else 1
+        if any(_is_commanded(problem, equation, v) for v in (a, b)) and not _is_commanded(problem, equation, rest):
+            yield aimed_at_point(problem, equation, angle, (flip * a, flip * b, -flip * rest))
+        else:
             yield _solve(problem, equation, angle, _amplitude(problem, equation, angle, flip * a, flip * b, -flip * rest))
+
+
+def _is_commanded(problem: Problem, equation: Equation, coefficient: sp.Expr) -> bool:
+    """Whether a coefficient changes with the commanded position."""
+    written_out = coefficient.xreplace({let.name: let.value for let in equation.lets})
+    return bool(problem.reduce(written_out).free_symbols & {real(c) for c in ("x", "y", "z")})
 
 
 @dataclass(frozen=True)
@@ -58,8 +69,14 @@ def _amplitude(
     if along.is_number and across.is_number:
         size = sp.sqrt(along**2 + across**2)
         return _Amplitude(naming, common * size, (), along / size, across / size, e, slope, common * size)
+    if across == 0 and problem.is_never_zero(along):  # of either sign: sigma is then the sign of the sine
+        return _Amplitude(naming, common * along, (), sp.Integer(1), sp.Integer(0), e, sine(angle), sp.Integer(1))
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
     effective = naming.length(f"effective_{angle.name}", along, across, "effective length that the angle turns")
+    right = e.subs(along**2, effective**2 - across**2) if along.is_Symbol else e
+    if problem.is_never_zero(along**2 + across**2):
+        length = common * effective
+        return _Amplitude(naming, length, (), along / effective, across / effective, sp.expand(right), slope, length)
     aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
     divisor = real(f"divisor_{angle.name}")
     guard = (
@@ -97,7 +114,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
             Let(cosine(angle), amplitude.cos_unit * cos_name - amplitude.sin_unit * sin_name),
             Let(sine(angle), amplitude.sin_unit * cos_name + amplitude.cos_unit * sin_name),
         ]
-    slope = Slope(sigma, amplitude.slope, amplitude.slope_scale)
+    slope = Slope(sigma, amplitude.slope, amplitude.slope_scale, (length, right))
     return Binding("trigonometric", (angle,), tuple(statements), slope, cosine_alone=True)
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.kinematics import Kinematics
-from derive.mechanism import Turning
 from derive.program import Program, Status
 from derive.run import Array, run
 from derive.witness.closure import POSE, Closure
@@ -52,7 +51,7 @@ def displacement(closure: Closure, samples: Samples, joints: Array) -> Array:
 def check_forward(kin: Kinematics, closure: Closure, samples: Samples) -> float:
     """Forward kinematics closes Φ and gives the whole frame; `orientation` gives the same rotation."""
     frame = closure.frame(samples.joints, samples.parameters)[:, :, 0]
-    if kin.mechanism.task.turning is Turning.FULL:  # the closure speaks of the whole pose: any rotation may be right
+    if kin.mechanism.is_platform:  # the closure speaks of the whole pose: any rotation may be right
         frame[:, 3:] = _nearest_rotations(samples.pose[:, 3:])
     position = (samples.pose[:, :3] - frame[:, :3]) / samples.reach[:, None]
     if kin.mechanism.chain is None:  # closure equations speak of the commanded position: `displacement` measures it

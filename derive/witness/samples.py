@@ -70,7 +70,7 @@ def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     values = {name: column[machine] for name, column in machines.items()}
     reach = _reach(kin.mechanism, values)
     parameters = np.stack([values[name] for name in closure.parameters], axis=1)
-    if kin.mechanism.task.turning is Turning.FULL:
+    if kin.mechanism.is_platform:
         axes = axes_near_home(kin.mechanism, closure, values, parameters, reach, rng)
     else:
         axes = _axes(kin.mechanism, values, reach, rng)
@@ -135,6 +135,8 @@ def _draw(parameter: Parameter, count: int, rng: Generator) -> Array:
     size = abs(parameter.nominal) or _SPREAD.get(parameter.role, 50.0)
     if parameter.role is Role.LENGTH:
         drawn = parameter.nominal * rng.uniform(0.5, 1.5, count)
+    elif parameter.role is Role.SIGNED_LENGTH:
+        drawn = abs(parameter.nominal) * rng.uniform(0.5, 1.5, count) * rng.choice([-1.0, 1.0], count)
     elif parameter.role is Role.FLAG:
         drawn = np.ones(count)
     elif parameter.role is Role.SIGN:
@@ -146,7 +148,7 @@ def _draw(parameter: Parameter, count: int, rng: Generator) -> Array:
 
 
 def _reach(mechanism: Mechanism, values: dict[str, Array]) -> Array:
-    lengths = [np.abs(values[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
+    lengths = [np.abs(values[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)]
     total = np.sum(lengths, axis=0) if lengths else np.zeros_like(next(iter(values.values())))
     legs = max(1, len(mechanism.rods)) if mechanism.task.turning is Turning.NONE else 1  # of a loop, one leg
     return np.where(total > 0, total / legs, WITHOUT_LENGTHS)

@@ -23,6 +23,9 @@ from softkin._types import (
 )
 
 if TYPE_CHECKING:
+    from softkin.ac6_threeparallel import Ac6ThreeParallel
+    from softkin.ac6_txtytzryrxrz import Ac6TXTYTZRYRXRZ
+    from softkin.articulatedrobot_6dof import ArticulatedRobot6DOF
     from softkin.bipod_rotary import BipodRotary
     from softkin.crane import Crane
     from softkin.delta_p3c_type3 import DeltaP3CType3
@@ -42,6 +45,7 @@ if TYPE_CHECKING:
     from softkin.pcc import PCC
     from softkin.polar import Polar
     from softkin.polar_z import PolarZ
+    from softkin.pos_rrr import PosRRR
     from softkin.scara2_z import Scara2Z
     from softkin.scara3_ccz import Scara3CCZ
     from softkin.scara3_z import Scara3Z
@@ -60,6 +64,9 @@ __all__ = [
     "P2Y",
     "PCC",
     "SCCC",
+    "Ac6TXTYTZRYRXRZ",
+    "Ac6ThreeParallel",
+    "ArticulatedRobot6DOF",
     "Axis",
     "BipodRotary",
     "ConfigurationByte",
@@ -84,6 +91,7 @@ __all__ = [
     "Parameter",
     "Polar",
     "PolarZ",
+    "PosRRR",
     "Scara2Z",
     "Scara3CCZ",
     "Scara3Z",
@@ -103,6 +111,9 @@ __all__ = [
 ]
 
 _CLASSES: dict[str, tuple[str, str]] = {
+    "Kin_Ac6_ThreeParallel": ("ac6_threeparallel", "Ac6ThreeParallel"),
+    "Kin_Ac6_TXTYTZRYRXRZ": ("ac6_txtytzryrxrz", "Ac6TXTYTZRYRXRZ"),
+    "Kin_ArticulatedRobot_6DOF": ("articulatedrobot_6dof", "ArticulatedRobot6DOF"),
     "Kin_Bipod_Rotary": ("bipod_rotary", "BipodRotary"),
     "Kin_Crane": ("crane", "Crane"),
     "Kin_Delta_P3C_Type3": ("delta_p3c_type3", "DeltaP3CType3"),
@@ -122,6 +133,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_PCC": ("pcc", "PCC"),
     "Kin_Polar": ("polar", "Polar"),
     "Kin_Polar_Z": ("polar_z", "PolarZ"),
+    "Kin_Pos_RRR": ("pos_rrr", "PosRRR"),
     "Kin_Scara2_Z": ("scara2_z", "Scara2Z"),
     "Kin_Scara3_CCZ": ("scara3_ccz", "Scara3CCZ"),
     "Kin_Scara3_Z": ("scara3_z", "Scara3Z"),

@@ -432,15 +432,10 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
         axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
-        # a4: what the sum a234 leaves
-        cos_a4 = (
-            cos_a2*cos_a3*cos_heading + cos_a2*sin_a3*sin_heading + cos_a3*sin_a2*sin_heading
-            - cos_heading*sin_a2*sin_a3
-        )
-        sin_a4 = (
-            cos_a2*cos_a3*sin_heading - cos_a2*cos_heading*sin_a3 - cos_a3*cos_heading*sin_a2
-            - sin_a2*sin_a3*sin_heading
-        )
+        cos_a23 = cos_a2*cos_a3 - sin_a2*sin_a3
+        sin_a23 = cos_a2*sin_a3 + cos_a3*sin_a2
+        cos_a4 = cos_a23*cos_heading + sin_a23*sin_heading  # a4: what the sum a234 leaves
+        sin_a4 = cos_a23*sin_heading - cos_heading*sin_a23
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
         axis_a4 = nearest_period(offset_a4 + atan2(sin_a4, cos_a4)/DEGREE, near_a4)  # A4: its turn

@@ -515,15 +515,10 @@ class SCCC(OffsetKinematics, TwistChoice):
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
         # A2: its turn
         axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE - coupling_12*motor_a1/DEGREE, near_a2)
-        # a3: what the sum a123 leaves
-        cos_a3 = (
-            cos_a1*cos_a2*cos_heading + cos_a1*sin_a2*sin_heading + cos_a2*sin_a1*sin_heading
-            - cos_heading*sin_a1*sin_a2
-        )
-        sin_a3 = (
-            cos_a1*cos_a2*sin_heading - cos_a1*cos_heading*sin_a2 - cos_a2*cos_heading*sin_a1
-            - sin_a1*sin_a2*sin_heading
-        )
+        cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
+        sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
+        cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
+        sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
         free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2

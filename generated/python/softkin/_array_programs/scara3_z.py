@@ -180,15 +180,10 @@ class ArrayPrograms(Programs):
             open_a2,
         )
         axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
-        # a3: what the sum a123 leaves
-        cos_a3 = (
-            cos_a1*cos_a2*cos_heading + cos_a1*sin_a2*sin_heading + cos_a2*sin_a1*sin_heading
-            - cos_heading*sin_a1*sin_a2
-        )
-        sin_a3 = (
-            cos_a1*cos_a2*sin_heading - cos_a1*cos_heading*sin_a2 - cos_a2*cos_heading*sin_a1
-            - sin_a1*sin_a2*sin_heading
-        )
+        cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
+        sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
+        cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
+        sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,

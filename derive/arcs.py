@@ -1,0 +1,212 @@
+"""Free angles stay where the rest can be solved: a partial step's angle is moved onto the arc that later steps can reach.
+
+Where a partial step's measure vanishes its angle u is free, and where the measure is tiny u is known only to a few digits.
+A later two-root step needs |e| <= h; there e = level + along cos u + across sin u (what else e holds of u, its second harmonic,
+vanishes with the measure, and is taken as constant). So cos(u - centre) lies between two bounds: on each side of the centre an
+arc. u moves to the nearest point of the arc on its side, where the motion that this costs, measure times arc, is rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.algebra import cosine, linear_coefficients, sine
+from derive.problem import Measure, Slope
+from derive.program import (
+    FREE_ANGLE,
+    ROUNDING,
+    Atan2,
+    Let,
+    NearestOnArc,
+    Root,
+    Select,
+    Statement,
+    binds,
+    reads,
+    real,
+    rewritten,
+)
+
+
+class Unreachable(Exception):
+    """An angle can be free where later steps need more of it than an arc can say."""
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A name that the angle moves: fixed + along cos u + across sin u."""
+
+    name: sp.Symbol
+    fixed: sp.Expr
+    along: sp.Expr
+    across: sp.Expr
+
+
+@dataclass(frozen=True)
+class _Condition:
+    """|e| <= h of a later step: e is made of the parts that the angle moves, at most squared."""
+
+    word: str
+    size: sp.Expr
+    value: sp.Expr
+    parts: tuple[_Part, ...]
+
+
+def within_reach(
+    statements: Sequence[Statement], slopes: Sequence[Slope], measures: Sequence[Measure]
+) -> tuple[Statement, ...]:
+    """The derivation with every angle that can be free kept where later steps have solutions."""
+    found = list(statements)
+    for measure in measures:
+        for slope in slopes:
+            condition = _condition(found, measure.angle, slope)
+            if condition is not None:
+                found = _in_order(_moved(found, measure, condition))
+    return tuple(found)
+
+
+def _in_order(statements: Sequence[Statement]) -> list[Statement]:
+    """Every statement behind those that it reads: a motion reads what was bound after the angle, but does not depend on it."""
+    sources = {name: s for s in statements for name in binds(s)}
+    ordered: list[Statement] = []
+    begun: set[int] = set()
+
+    def provide(statement: Statement) -> None:
+        if id(statement) not in begun:
+            begun.add(id(statement))
+            for source in [s for name, s in sources.items() if name in reads(statement)]:
+                provide(source)
+            ordered.append(statement)
+
+    for s in statements:
+        provide(s)
+    return ordered
+
+
+def _condition(statements: Sequence[Statement], angle: sp.Symbol, slope: Slope) -> _Condition | None:
+    """The condition of a later step on the angle; None where it has none."""
+    if slope.reach is None:
+        return None
+    dependent = _dependent(statements, angle)
+    size, value = (sp.expand(_squares(v, dependent)) for v in slope.reach)
+    moved = sorted(value.free_symbols & dependent.keys(), key=lambda s: s.name)
+    if not moved or size.free_symbols & dependent.keys():
+        return None
+    parts = tuple(_part(name, dependent[name], angle) for name in moved)
+    return _Condition(f"{angle.name}_of_{slope.sigma.name.removeprefix('sigma_')}", size, value, parts)
+
+
+def _dependent(statements: Sequence[Statement], angle: sp.Symbol) -> dict[sp.Symbol, sp.Expr]:
+    """Every name that depends on the angle, through the angle's cosine and sine."""
+    own = {cosine(angle), sine(angle)}
+    dependent: dict[sp.Symbol, sp.Expr] = {}
+    for s in statements:
+        if isinstance(s, Let) and s.name not in own and s.value.free_symbols & (own | dependent.keys()):
+            dependent[s.name] = s.value if isinstance(s.value, Root) else s.value.xreplace(dependent)
+    return dependent
+
+
+def _squares(value: sp.Expr, dependent: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    """The squares of lengths through what the lengths are made of."""
+    roots = {name: v.args[0] for name, v in dependent.items() if isinstance(v, Root)}
+    return value.replace(lambda n: isinstance(n, sp.Pow) and n.base in roots and n.exp == 2, lambda n: roots[n.base])
+
+
+def _part(name: sp.Symbol, value: sp.Expr, angle: sp.Symbol) -> _Part:
+    linear = linear_coefficients(sp.expand(value), (cosine(angle), sine(angle)))
+    if linear is None:
+        raise Unreachable(f"{angle.name} can be free, and {name.name} depends on it in a way that no arc can tell")
+    (along, across), fixed = linear
+    return _Part(name, fixed, along, across)
+
+
+def _moved(statements: Sequence[Statement], measure: Measure, condition: _Condition) -> list[Statement]:
+    """The statements with the angle moved onto the arc, where it was bound."""
+    names = {f(measure.angle): real(f"{f(measure.angle).name}_before_{condition.word}") for f in (cosine, sine)}
+    found: list[Statement] = []
+    for s in statements:
+        if not (isinstance(s, Let) and s.name in names):
+            found.append(s)
+            continue
+        found.append(Let(names[s.name], s.value, s.note))
+        if s.name == sine(measure.angle):  # the second of the two
+            found += [rewritten(m, lambda e: e.xreplace(names)) for m in _motion(measure, condition)]
+            found += _bound(measure, condition, names)
+    return found
+
+
+def _motion(measure: Measure, condition: _Condition) -> tuple[Let, ...]:
+    """Where the angle moves, in terms of where it was."""
+    word, cos_u, sin_u = condition.word, cosine(measure.angle), sine(measure.angle)
+    value, along, across, swing, level, size = (
+        real(f"{name}_{word}") for name in ("value", "along", "across", "swing", "level", "size")
+    )
+    divisor, highest, lowest, near, far = (real(f"{name}_{word}") for name in ("divisor", "highest", "lowest", "near", "far"))
+    centre, before, side, moved = (real(f"{name}_{word}") for name in ("centre", "angle", "side", "moved"))
+    turns = sp.Gt(swing, ROUNDING * size)
+    one = sp.Integer(1)
+    lets, total, slopes = _parts(condition, cos_u, sin_u)
+    return (
+        *lets,
+        Let(value, total, f"a later step needs this of {measure.angle.name}: no larger in size than"),
+        Let(size, sp.Abs(condition.size)),
+        Let(along, slopes[0]),
+        Let(across, slopes[1]),
+        Let(swing, Root(along**2 + across**2)),
+        Let(level, value - along * cos_u - across * sin_u),
+        Let(divisor, Select(turns, swing, one)),
+        Let(highest, Select(turns, _cosine_of((size - level) / divisor), one), "the arc: cosines from its centre"),
+        Let(lowest, Select(turns, _cosine_of((-size - level) / divisor), -one)),
+        Let(near, Atan2(Root((1 - highest) * (1 + highest)), highest)),
+        Let(far, Atan2(Root((1 - lowest) * (1 + lowest)), lowest)),
+        Let(centre, Atan2(across, along)),
+        Let(before, Atan2(sin_u, cos_u)),
+        Let(side, Select(sp.Ge(along * sin_u - across * cos_u, 0), one, -one)),
+        Let(moved, NearestOnArc(before, centre + side * (near + far) / 2, (far - near) / 2)),
+    )
+
+
+def _parts(
+    condition: _Condition, cos_u: sp.Symbol, sin_u: sp.Symbol
+) -> tuple[tuple[Let, ...], sp.Expr, tuple[sp.Expr, sp.Expr]]:
+    """The parts under names, e at the angle, and the coefficients of its first harmonic."""
+    lets: list[Let] = []
+    here: dict[sp.Symbol, sp.Expr] = {}
+    fixed: dict[sp.Symbol, sp.Expr] = {}
+    for part in condition.parts:
+        names = {w: real(f"{part.name.name}_{w}") for w in ("fixed", "along", "across")}
+        lets += [Let(n, getattr(part, w)) for w, n in names.items()]
+        lets.append(Let(real(f"{part.name.name}_here"), names["fixed"] + names["along"] * cos_u + names["across"] * sin_u))
+        here[part.name], fixed[part.name] = lets[-1].name, names["fixed"]
+    slopes = [
+        sp.Add(*[sp.diff(condition.value, p.name).xreplace(fixed) * real(f"{p.name.name}_{w}") for p in condition.parts])
+        for w in ("along", "across")
+    ]
+    return tuple(lets), condition.value.xreplace(here), (slopes[0], slopes[1])
+
+
+def _cosine_of(value: sp.Expr) -> sp.Expr:
+    return Select(sp.Gt(value, 1), sp.Integer(1), Select(sp.Lt(value, -1), sp.Integer(-1), value))
+
+
+def _bound(measure: Measure, condition: _Condition, names: dict[sp.Symbol, sp.Symbol]) -> list[Let]:
+    """Cosine and sine after the motion, where it is needed and costs no more than rounding."""
+    word, before = condition.word, [names[f(measure.angle)] for f in (cosine, sine)]
+    value, size, moved, costs, stays = (real(f"{name}_{word}") for name in ("value", "size", "moved", "cost", "stays"))
+    after = [sp.cos(moved), sp.sin(moved)]
+    names_after = [real(f"{f(measure.angle).name}_after_{word}") for f in (cosine, sine)]
+    share = measure.value / measure.scale
+    chord = Root(sp.Add(*[(a - b) ** 2 for a, b in zip(names_after, before, strict=True)]))
+    dear = sp.And(sp.Gt(share, FREE_ANGLE), sp.Gt(costs, ROUNDING))
+    return [
+        *(Let(n, v) for n, v in zip(names_after, after, strict=True)),
+        Let(costs, share * chord, "what the motion changes of the pose"),
+        Let(stays, Select(sp.Le(sp.Abs(value), size), sp.Integer(1), Select(dear, sp.Integer(1), sp.Integer(0)))),
+        *(
+            Let(f(measure.angle), Select(sp.Gt(stays, 0), b, a), "moved to where the rest can be reached")
+            for f, a, b in zip((cosine, sine), names_after, before, strict=True)
+        ),
+    ]

@@ -1,0 +1,66 @@
+"""Lateral: a cos u + b sin u = e, where (a, b) is a commanded point that u aims at and e how far beside the arm it is.
+
+Two roots: h = |(a, b)|, C = e / h, S = sigma sqrt((h - e)(h + e)) / h as in `trigonometric`. Slope h S: sigma is its sign.
+Guard: |e| <= h, else the point is nearer to the axis than the arm is beside it. Degenerate case: the point on the axis, where
+no h is left: nothing can be reached unless e vanishes too, and then u is free. So h is the measure where e is zero.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derive.algebra import cosine, sine
+from derive.problem import Binding, Equation, Measure, Problem, Slope
+from derive.program import BOUNDARY, FREE_ANGLE, Let, Require, Root, Select, Statement, Status, real
+from derive.subproblems.direction import direction, free_angle
+from derive.subproblems.naming import Naming
+
+Row = tuple[sp.Expr, sp.Expr, sp.Expr]
+
+
+def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: Row) -> Binding:
+    """The two directions in which an arm meets a commanded point."""
+    a, b, e = row
+    naming = Naming(problem, equation.lets)
+    along, across = naming.named(a, f"along_{angle.name}"), naming.named(b, f"across_{angle.name}")
+    distance = naming.length(f"distance_{angle.name}", along, across, f"{angle.name}: of the point from its axis")
+    sigma = real(f"sigma_{angle.name}")
+    scale = equation.scales.get(angle, problem.scale)
+    slope = Slope(sigma, a * sine(angle) - b * cosine(angle), scale)
+    note = f"{angle.name}: aimed by the {equation.label} equation"
+    if e == 0:
+        known = direction(
+            problem, angle, along=-sigma * across, across=sigma * along, measure=distance, note=note, is_length=True
+        )
+        return Binding("lateral", (angle,), (*naming.lets, *known), slope, Measure(angle, distance, problem.scale))
+    beside = naming.named(e, f"beside_{angle.name}", "how far beside the arm the point is")
+    return _beside(problem, angle, naming, (along, across, beside, distance), slope, note)
+
+
+def _beside(
+    problem: Problem,
+    angle: sp.Symbol,
+    naming: Naming,
+    row: tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr],
+    slope: Slope,
+    note: str,
+) -> Binding:
+    along, across, beside, distance = row
+    square, divisor = real(f"sine_square_{angle.name}"), real(f"divisor_{angle.name}")
+    cos_name, sin_name = real(f"cos_swing_{angle.name}"), real(f"sin_swing_{angle.name}")
+    shortest = FREE_ANGLE * problem.scale
+    determined = sp.Gt(distance, shortest)
+    cos_free, sin_free = free_angle(problem, angle)
+    cos_value = (along * cos_name - across * sin_name) / divisor
+    sin_value = (across * cos_name + along * sin_name) / divisor
+    statements: tuple[Statement, ...] = (
+        *naming.lets,
+        Let(divisor, Select(determined, distance, shortest), note),
+        Let(square, (distance - beside) * (distance + beside) / divisor**2, "kept as a product"),
+        Require(sp.Ge(square, -BOUNDARY), Status.UNREACHABLE, "out of reach"),
+        Let(cos_name, beside / divisor),
+        Let(sin_name, slope.sigma * Root(square)),
+        Let(cosine(angle), Select(determined, cos_value, cos_free), "its reference where it is free"),
+        Let(sine(angle), Select(determined, sin_value, sin_free)),
+    )
+    return Binding("lateral", (angle,), statements, slope, cosine_alone=True)
