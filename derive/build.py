@@ -9,6 +9,7 @@ import sympy as sp
 
 from derive.assembling import Assembled, assembled, assembly_checks, bound_checks
 from derive.branching import Assignment, assign, margin_lets, with_branch_signs
+from derive.carried import carried_program
 from derive.closure import flange_rotation, heading_of
 from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program
 from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
@@ -62,9 +63,11 @@ def build(mechanism: Mechanism) -> Kinematics:
         jacobian,
         _image_program(mechanism),
     ]
-    if mechanism.task.turning is not Turning.NONE:
+    if mechanism.task.turning in (Turning.ABOUT_Z, Turning.FULL):
         programs.append(_projection_program(mechanism))
-    if mechanism.offset_interface:
+    if mechanism.is_orientation:
+        programs.append(carried_program(mechanism))
+    elif mechanism.offset_interface:
         programs += _offset_programs(mechanism, closed)
     return _finished(mechanism, programs, kept)
 
@@ -129,6 +132,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
         freedom=_freedom(mechanism),
         reads_rotation=mechanism.task.turning is not Turning.NONE,
         forward_from=finished.get("forward_from"),
+        carried=finished.get("carried"),
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.closure import COORDINATES, with_fixed_angles
+from derive.closure import COORDINATES, ROTATION_ENTRIES, with_fixed_angles
 from derive.forward import Forward
 from derive.frames import Chain, Motion
 from derive.kinematics import Margin
@@ -25,8 +25,14 @@ from derive.splits import is_spatial
 from derive.trigonometry import named_trigonometry
 from derive.walk import walk
 
-_ROWS = ("x", "y", "z", "turn x", "turn y", "turn z")
-_TURNS = {Turning.NONE: (), Turning.ABOUT_Z: ("turn z",), Turning.FULL: ("turn x", "turn y", "turn z")}
+_ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
+"""Of a twist: along and about the axes of the base, and about the x and y of the tool, which tilt its z."""
+_TURNS: dict[Turning, tuple[str, ...]] = {
+    Turning.NONE: (),
+    Turning.ABOUT_Z: ("turn z",),
+    Turning.DIRECTION: ("tilt x", "tilt y"),
+    Turning.FULL: ("turn x", "turn y", "turn z"),
+}
 
 
 def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
@@ -64,7 +70,10 @@ def _by_screws(mechanism: Mechanism) -> sp.Matrix:
             if rate != 0:
                 column += rate * _twist(screw, position)
         columns.append(column)
-    full = sp.Matrix.hstack(*columns)
+    full = sp.Matrix.hstack(sp.zeros(6, 0), *columns)
+    if mechanism.task.turning is Turning.DIRECTION:
+        rotation = sp.Matrix(3, 3, list(ROTATION_ENTRIES))
+        full = sp.Matrix.vstack(full, (rotation.T * full[3:, :])[:2, :])
     chosen = [_ROWS.index(row) for row in jacobian_rows(mechanism)]
     return full.extract(chosen, list(range(full.cols)))
 
@@ -123,8 +132,8 @@ def _entries(
 
 def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
     """How the motors move the joints: the identity, and the gear couplings."""
-    joints = sp.Matrix([j.motor + j.coupling for j in mechanism.joints])
-    return joints.jacobian([j.motor for j in mechanism.joints])
+    motors = [j.motor for j in mechanism.joints]
+    return sp.Matrix(len(motors), len(motors), [sp.diff(j.motor + j.coupling, m) for j in mechanism.joints for m in motors])
 
 
 @dataclass(frozen=True)
@@ -141,6 +150,8 @@ def singularity_program(
     """The margins that multiply to the determinant of the Jacobian, and their integer exponents."""
     lets = [Let(real(f"margin_{f.name}"), f.value) for f in factors]
     outputs = [Output(f.name, let.name) for f, let in zip(factors, lets, strict=True)]
+    if not mechanism.joints:
+        return assemble("singularity", statements, []), ()
     draft = assemble("singularity", (*statements, *lets), outputs)
     exponents = _exponents(mechanism, draft, jacobian)
     kept = [(o, e) for o, e in zip(draft.outputs, exponents, strict=True) if e != 0]

@@ -83,6 +83,7 @@ def _solve(mechanism: Mechanism, closure: Closure, moving: tuple[Joint, ...]) ->
         signs=signs_of(mechanism),
         turns=closure.turns,
         rotation=ROTATION_ENTRIES if closure.turns else (),
+        columns=closure.columns,
         positive=tuple(polynomial(p, all_angles(mechanism), signs_of(mechanism)) for p in mechanism.positive),
     )
     return solve(problem, closure.arguments, lambda angle: (*axis_lets(joints[angle]), plain_angle(joints[angle])))
@@ -125,9 +126,9 @@ def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
 def _heading(mechanism: Mechanism) -> tuple[Statement, ...]:
     if mechanism.task.turning is Turning.NONE:
         return ()
-    if mechanism.task.turning is Turning.FULL:
-        return is_rotation()
-    return (*is_rotation(), *heading_lets(mechanism))
+    if mechanism.task.turning is Turning.ABOUT_Z:
+        return (*is_rotation(), *heading_lets(mechanism))
+    return is_rotation()
 
 
 def inverse_program(

@@ -70,6 +70,8 @@ class Kinematics:
     projection       r11…r33 → the same, projected to the nearest rotation the flange can have; None where not chosen
     offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None where the interface is not offered
     offset_configuration   axis_*, point_* → `branch_<name>`; None likewise
+    carried          nothing → base_x…z, carried_x…z (as the tool sees it), wrist_offset (a size): where the end point of an
+                     orientation kinematics is held, for what it can be combined with; None for any other
     """
 
     mechanism: Mechanism
@@ -91,6 +93,7 @@ class Kinematics:
     freedom: Freedom
     reads_rotation: bool
     forward_from: Program | None = None
+    carried: Program | None = None
     evidence: Evidence | None = None
 
     @property

@@ -185,13 +185,15 @@ class Turning(Enum):
     """The rotation is fixed or follows from the position: the commanded one is never read."""
     ABOUT_Z = "about z"
     """One turn about the machine's z: the commanded rotation is projected, tool direction first."""
+    DIRECTION = "direction"
+    """The direction of the tool, the z of the commanded rotation; the turn about it is passive."""
     FULL = "full"
     """The whole rotation."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is commanded: "xyz", or "xy" with z met; and how much of the rotation."""
+    """What is commanded: "xyz", "xy" with z met, or "" where a position kinematics is in front; and how much of the rotation."""
 
     position: str
     turning: Turning = Turning.NONE
@@ -242,6 +244,11 @@ class Mechanism:
     def is_platform(self) -> bool:
         """Whether this is a plate that follows the whole commanded pose: forward kinematics iterates."""
         return self.chain is None and self.task.turning is Turning.FULL
+
+    @property
+    def is_orientation(self) -> bool:
+        """Whether this is what a position kinematics carries: it turns the flange, and its position only follows."""
+        return self.chain is not None and not self.task.position
 
     @property
     def equations(self) -> tuple[sp.Expr, ...]:

@@ -94,6 +94,8 @@ class Problem:
     """The turns that the commanded rotation is the product of, for equations that are written when angles are known."""
     rotation: tuple[sp.Symbol, ...] = ()
     """The entries of the commanded rotation, by rows; none where it is not commanded."""
+    columns: tuple[int, ...] = (0, 1, 2)
+    """The columns of the commanded rotation that are followed."""
     definitions: Mapping[sp.Symbol, sp.Expr] | None = None
     """What known names stand for, as far as they are polynomials: for tests of zero."""
 

@@ -43,7 +43,7 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
     for name in (mechanism.name, *mechanism.aliases):
         if not _BLOCK.match(name):
             yield f"{name!r} cannot name a function block"
-    if not mechanism.joints:
+    if not mechanism.joints and (mechanism.task.position or mechanism.task.turning is not Turning.NONE):
         yield "the mechanism has no joints"
     for kind, names in (
         ("joint", [j.name for j in mechanism.joints]),
@@ -113,8 +113,8 @@ def _periods(mechanism: Mechanism) -> Iterator[str]:
 def _shape(mechanism: Mechanism) -> Iterator[str]:
     if (mechanism.chain is None) == (not mechanism.equations):
         yield "the mechanism needs either a chain or closure equations"
-    if mechanism.task.position not in ("xy", "xyz"):
-        yield f"the task commands {mechanism.task.position!r}: it must be 'xy' or 'xyz'"
+    if mechanism.task.position not in ("xy", "xyz") and not mechanism.is_orientation:
+        yield f"the task commands {mechanism.task.position!r}: it must be 'xy' or 'xyz', or '' of a chain that only turns the flange"
     used = {s for _, e in _equations(mechanism) for s in e.free_symbols}
     for joint in mechanism.joints:
         if joint.symbol not in used:

@@ -15,6 +15,7 @@ from derive.witness.disagreement import Disagreement
 from derive.witness.inverse import check_inverse, check_offset, check_solutions
 from derive.witness.orientation import check_orientation
 from derive.witness.samples import regular_samples
+from derive.witness.still import check_still
 
 __all__ = ["Disagreement", "witness"]
 
@@ -25,6 +26,8 @@ def witness(kin: Kinematics) -> Evidence:
     """Measure every program of the mechanism; raises `Disagreement` where one contradicts the closure."""
     try:
         closure = closure_of(kin.mechanism)
+        if not kin.mechanism.joints:
+            return check_still(kin, closure)
         samples = regular_samples(kin, closure)
         forward = max(check_forward(kin, closure, samples), check_orientation(kin, samples))
         jacobian = check_jacobian(kin, closure, samples)
