@@ -29,6 +29,7 @@ from derive.passes import assemble, hoist
 from derive.platform import MARGIN, platform_checks, platform_singularity
 from derive.pose import pose_of
 from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real
+from derive.searching import DETERMINANT, branch_statements, determinant_margin, margin_statements, solve_both
 from derive.shared_names import refuse_shared_names
 from derive.solve import Unsolved
 from derive.splits import is_spatial
@@ -40,6 +41,8 @@ def build(mechanism: Mechanism) -> Kinematics:
     _count(mechanism)
     if mechanism.is_platform:
         return _platform(mechanism)
+    if mechanism.search is not None:
+        return _searching(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
     forward = closed.forward
     inverse = solve_pose(mechanism)
@@ -92,6 +95,25 @@ def _platform(mechanism: Mechanism) -> Kinematics:
         _projection_program(mechanism),
     ]
     return _finished(mechanism, programs, (Margin(MARGIN, -1, "type 2"),))
+
+
+def _searching(mechanism: Mechanism) -> Kinematics:
+    """A chain that one parameter keeps from having a closed form: searched along one joint, one determinant is the margin."""
+    both = solve_both(mechanism)
+    statements, margins = margin_statements(both)
+    determinant, scaled = determinant_margin(both)
+    margin = Let(real(f"margin_{DETERMINANT.name}"), scaled)
+    programs = [
+        forward_program(mechanism, replace(both.forward, statements=statements), margins),
+        orientation_program(both.forward),
+        inverse_program("branch", mechanism, both.closed, branch_statements(both)),
+        _limits_program(mechanism),
+        assemble("singularity", (*both.forward.statements, *determinant, margin), [Output(DETERMINANT.name, margin.name)]),
+        jacobian_program(mechanism, both.forward),
+        _image_program(mechanism),
+        _projection_program(mechanism),
+    ]
+    return _finished(mechanism, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
 
 
 def _count(mechanism: Mechanism) -> None:

@@ -109,6 +109,12 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     return Closure(closure.equations + turns, arguments, closure.lets, closure.plane)
 
 
+def closure_at(mechanism: Mechanism, known: Joint) -> Closure:
+    """The closure of a commanded pose with one joint known."""
+    assert mechanism.chain is not None
+    return _spatial_closure(mechanism, mechanism.chain, tuple(j for j in mechanism.joints if j != known))
+
+
 def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ...]) -> Closure:
     """A chain that turns about several axes: its position equations are split, its rotation is left to the solver."""
     angles, lengths = (tuple(j.symbol for j in moving if j.is_angle is kind) for kind in (True, False))

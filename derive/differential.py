@@ -46,12 +46,18 @@ def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
     if mechanism.is_platform:
         solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
         return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, width))
+    statements, values = jacobian_entries(mechanism)
+    return assemble("jacobian", (*forward.statements, *statements), _entries_of(values, width))
+
+
+def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
+    """The entries by rows at a pose that forward kinematics has found, and statements that they need besides."""
     matrix, naming = (_by_screws(mechanism), ()) if mechanism.chain is not None else _by_closure(mechanism)
     coupled = matrix * _motor_matrix(mechanism)
     planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
     entries = [sp.expand_mul(e) if planar else e for e in coupled]
     lets, values = named_trigonometry(mechanism, entries)
-    return assemble("jacobian", (*forward.statements, *naming, *lets), _entries_of(values, width))
+    return (*naming, *lets), values
 
 
 def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:

@@ -47,6 +47,8 @@ class Evidence:
     jacobian: float
     solutions: int
     """Real solutions found by multi-start root finding, agreeing with the slots at every sampled pose."""
+    missed: tuple[int, int] | None = None
+    """Of a search: how many solutions no slot held, of how many in all."""
 
 
 @dataclass(frozen=True)

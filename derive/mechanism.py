@@ -58,6 +58,7 @@ __all__ = [
     "Mechanism",
     "Parameter",
     "Rod",
+    "Search",
     "Role",
     "Task",
     "Turning",
@@ -70,6 +71,7 @@ __all__ = [
     "assembly",
     "bound",
     "branch",
+    "crossing",
     "coordinate",
     "coupling",
     "distance",
@@ -85,6 +87,7 @@ __all__ = [
     "radians",
     "rod",
     "rotary",
+    "search",
     "sign",
     "signed_length",
 ]
@@ -113,6 +116,19 @@ class Branch:
     signs: tuple[int, int]
     margin: str
     """What the singularity is called where its two solutions meet."""
+
+    @property
+    def is_crossing(self) -> bool:
+        """Whether it tells the roots of a search apart: its indicator is the slope of what is searched to vanish."""
+        return bool(self.indicator is sp.nan)
+
+
+@dataclass(frozen=True)
+class Search:
+    """A joint that is searched along where no subproblem determines it, because a parameter is not zero."""
+
+    joint: Joint
+    where: Parameter
 
 
 @dataclass(frozen=True)
@@ -220,6 +236,7 @@ class Mechanism:
     """Where an iterative forward kinematics starts: x, y, z, then roll, pitch and yaw in radians (Rz Ry Rx)."""
     bounds: tuple[Bound, ...] = ()
     branches: tuple[Branch, ...] = ()
+    search: Search | None = None
     positive: tuple[sp.Expr, ...] = ()
     """Quantities whose negative mirror solution the machine does not have."""
     limited: tuple[Limited, ...] = ()
@@ -271,6 +288,16 @@ def branch(name: str, indicator: object, *, margin: str | None = None, **names: 
     """A branch by its indicator: `branch("elbow", sin(A2), right=+1, left=-1)`; the first name is byte 1."""
     first, second = _two_names(f"branch {name!r}", names)
     return Branch(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin or name)
+
+
+def crossing(name: str, **names: int) -> Branch:
+    """The roots of a search told apart by whether what is searched to vanish rises or falls with the joint."""
+    return branch(name, sp.nan, margin=None, **names)
+
+
+def search(joint: Joint, *, where: Parameter) -> Search:
+    """Search along a joint where the parameter is not zero; where it is zero, the closure has a closed form."""
+    return Search(joint, where)
 
 
 def assembly(name: str, indicator: object, *, margin: str, handedness: object = 1, **names: int) -> Assembly:

@@ -83,7 +83,9 @@ class Select(sp.Function):
 
     @classmethod
     def eval(cls, condition: Boolean, first: sp.Expr, second: sp.Expr) -> sp.Expr | None:
-        """A choice between equals is none."""
+        """A choice between equals is none, nor one that is decided."""
+        if condition in (sp.true, sp.false):
+            return first if condition == sp.true else second
         return first if first == second else None
 
 

@@ -114,7 +114,7 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
     if (mechanism.chain is None) == (not mechanism.equations):
         yield "the mechanism needs either a chain or closure equations"
     if mechanism.task.position not in ("xy", "xyz") and not mechanism.is_orientation:
-        yield f"the task commands {mechanism.task.position!r}: it must be 'xy' or 'xyz', or '' of a chain that only turns the flange"
+        yield f"the task commands {mechanism.task.position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
     used = {s for _, e in _equations(mechanism) for s in e.free_symbols}
     for joint in mechanism.joints:
         if joint.symbol not in used:
@@ -143,7 +143,7 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
     for place, expression in named:
         yield from _unknown(place, expression, known, "a joint or a parameter of this mechanism")
     for branch in mechanism.branches:
-        if not joints & branch.indicator.free_symbols:
+        if not branch.is_crossing and not joints & branch.indicator.free_symbols:
             yield f"branch {branch.name!r}: its indicator {branch.indicator} depends on no joint"
 
 

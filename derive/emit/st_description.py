@@ -82,6 +82,9 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
         "finding, each of them a solution of these formulas. No run on a controller.",
         _WIDTH,
     )
+    if found.missed is not None:
+        missed, total = found.missed
+        yield from wrap(f"A scan is no proof: it missed {missed} of {total} solutions in this check.", _WIDTH)
 
 
 def _item(text: str) -> list[str]:

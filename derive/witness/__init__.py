@@ -34,7 +34,7 @@ def witness(kin: Kinematics) -> Evidence:
         check_margins(kin, closure, samples)
         inverse, round_trip = check_inverse(kin, closure, samples)
         offset, offset_trip = check_offset(kin, closure, samples)
-        solutions = check_solutions(kin, closure, samples)
+        solutions, missed = check_solutions(kin, closure, samples)
     except Disagreement as problem:
         raise Disagreement(f"{kin.mechanism.name}: {problem}") from None
     return Evidence(
@@ -43,6 +43,7 @@ def witness(kin: Kinematics) -> Evidence:
         round_trip=decade(max(round_trip, offset_trip)),
         jacobian=decade(jacobian),
         solutions=solutions,
+        missed=missed,
     )
 
 

@@ -15,7 +15,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.frames import Chain, Motion
-from derive.mechanism import COORDINATE_NAMES, ROTATION, Mechanism, Turning, X, Y, Z
+from derive.mechanism import COORDINATE_NAMES, ROTATION, Branch, Mechanism, Turning, X, Y, Z
 from derive.program import DEGREE, real
 from derive.run import Array
 from derive.witness.terms import Term, term
@@ -110,7 +110,7 @@ def closure_of(mechanism: Mechanism) -> Closure:
         by_joints=Rows("by_joints", state, ca.jacobian(at_rest[0], q)),
         frame=Rows("frame", (q, p), _frame(mechanism.chain, known)),
         positive=Rows("positive", state, _column([term(sp.sympify(e), named) for e in _positive(mechanism)])),
-        indicators=Rows("indicators", state, _column([b.signs[0] * term(b.indicator, named) for b in mechanism.branches])),
+        indicators=Rows("indicators", state, _column([_indicator(b, named) for b in mechanism.branches])),
         equations=equations,
         task=task,
         parameters=tuple(s.name for s in constants),
@@ -134,6 +134,11 @@ def _positive(mechanism: Mechanism) -> list[sp.Expr]:
     way = mechanism.assembly
     mode = way.signs[0] * (1 - 2 * real(way.parameter)) * way.indicator * sp.sign(way.handedness)
     return [*left, mode / sp.Mul(*[rod.length for rod in mechanism.rods]) - LEAST_MARGIN]
+
+
+def _indicator(branch: Branch, named: dict[sp.Symbol, Term]) -> Term:
+    """Positive is byte 1; not a number, which contradicts nothing, where only a search tells the solutions apart."""
+    return ca.SX(float("nan")) if branch.is_crossing else branch.signs[0] * term(branch.indicator, named)
 
 
 def _column(terms: list[Term]) -> Term:
