@@ -2,7 +2,8 @@
 
 From the reference outwards on either side, in steps that grow to half a degree: between two trials where the residual changes
 its sign in the wanted direction a root is closed in, by turns with a secant and by halving. A jump of the residual is no
-root: what is left there does not vanish. The first root of the wanted branch is the nearest to the reference. Bounded,
+root: what is left there does not vanish. The first root of the wanted branch is the nearest to the reference. Where the
+residual vanishes at the reference without crossing zero there, in a singular pose, the reference is the root. Bounded,
 without memory, the same for whatever motion.
 
 A scan is no proof: two roots between neighbouring trials are missed. The witness measures how often.
@@ -31,6 +32,8 @@ STEP = DEGREE / 2
 _GROWTH = sp.Integer(8)
 _FIRST = STEP / _GROWTH**8
 """The steps grow from here: a root at the reference itself is found however fast the residual changes."""
+_LEAST_SLOPE, _LARGEST_SLOPE = sp.Float("1e-13"), sp.Float("1e-6")
+"""How much the residual changes over the first step on both sides of a root that is crossed: less is no crossing, more a jump."""
 _REFINEMENTS = 100
 _LIMIT = 1800
 """Passes in all: the scan, and some thirty roots of other branches that are closed in on the way."""
@@ -42,7 +45,7 @@ ACCEPTED = real("accepted")
 _STATE = (
     *("tried", "radius", "inner", "side", "closing", "halve"),
     *("low", "low_value", "high", "high_value"),
-    *("ahead", "behind", "usable_ahead", "usable_behind"),
+    *("ahead", "behind", "usable_ahead", "usable_behind", "touching"),
 )
 _NEARLY = sp.Rational(15, 16)
 _YES, _NO, _HALF = sp.Integer(1), sp.Integer(0), sp.Rational(1, 2)
@@ -94,8 +97,9 @@ def _moves(trial: Trial, start: sp.Expr, crossing: sp.Symbol) -> tuple[tuple[Let
     value, usable, scanning, first, ends = map(real, ("value", "usable", "scanning", "first", "ends"))
     closing, side, radius, inner = map(real, ("closing", "side", "radius", "inner"))
     is_scanning, is_first = (sp.Gt(s, _HALF) for s in (scanning, first))
-    next_side, next_radius = real("next_side"), real("next_radius")
-    outwards = sp.And(sp.Gt(ends, _HALF), sp.Or(is_first, sp.Lt(side, 0)))
+    next_side, next_radius, touches = real("next_side"), real("next_radius"), sp.Gt(real("next_touching"), _HALF)
+    outwards = sp.And(sp.Gt(ends, _HALF), sp.Or(is_first, sp.Lt(side, 0)), sp.Lt(real("touching"), _HALF))
+    turns = sp.And(sp.Gt(ends, _HALF), sp.Lt(real("next_touching"), _HALF))
     grown = Select(is_first, _FIRST, Select(sp.Lt(radius, STEP * _NEARLY), _GROWTH * radius, radius + STEP))
     moves = (
         Let(value, trial.value, "what is left of the closure"),
@@ -104,13 +108,16 @@ def _moves(trial: Trial, start: sp.Expr, crossing: sp.Symbol) -> tuple[tuple[Let
         Let(first, Select(sp.Gt(radius, 0), _NO, _YES)),
         *_crossing(crossing),
         *_closing(trial, start),
-        Let(next_side, Select(sp.Gt(ends, _HALF), Select(is_first, _YES, -side), side), "the other side, or one step out"),
+        *_touching(),
+        Let(next_side, Select(turns, Select(is_first, _YES, -side), side), "the other side, or one step out"),
         Let(next_radius, Select(outwards, grown, radius)),
         Let(real("next_inner"), Select(outwards, radius, inner)),
-        Let(real("next_tried"), Select(sp.Gt(ends, _HALF), start + next_side * next_radius, real("guess"))),
+        Let(real("outer"), start + next_side * next_radius),
+        Let(real("next_tried"), Select(touches, start, Select(sp.Gt(ends, _HALF), real("outer"), real("guess")))),
     )
-    outer = sp.And(is_scanning, sp.Or(is_first, sp.Gt(side, 0)))
-    inner = sp.And(is_scanning, sp.Or(is_first, sp.Lt(side, 0)))
+    passing = sp.And(is_scanning, sp.Lt(real("touching"), _HALF))
+    outer = sp.And(passing, sp.Or(is_first, sp.Gt(side, 0)))
+    inner = sp.And(passing, sp.Or(is_first, sp.Lt(side, 0)))
     remembered = (
         Let(real("next_ahead"), Select(outer, value, real("ahead"))),
         Let(real("next_behind"), Select(inner, value, real("behind"))),
@@ -118,6 +125,21 @@ def _moves(trial: Trial, start: sp.Expr, crossing: sp.Symbol) -> tuple[tuple[Let
         Let(real("next_usable_behind"), Select(inner, usable, real("usable_behind"))),
     )
     return (*moves, *remembered), tuple(real(f"next_{name}") for name in _STATE)
+
+
+def _touching() -> tuple[Let, ...]:
+    """After the first step on both sides: whether the residual vanishes at the reference and does not cross zero there."""
+    value, ahead, behind = real("value"), real("ahead"), real("behind")
+    at_first = sp.And(sp.Lt(real("side"), 0), sp.Gt(real("radius"), 0), sp.Le(real("inner"), 0))
+    is_new = sp.And(sp.Gt(real("scanning"), _HALF), sp.Lt(real("touching"), _HALF), sp.Lt(real("crosses"), _HALF))
+    apart = real("apart")
+    simple = sp.And(sp.Lt(ahead * value, 0), sp.Gt(apart, _LEAST_SLOPE), sp.Lt(apart, _LARGEST_SLOPE))
+    found = sp.And(at_first, is_new, sp.Le(sp.Abs(behind), BOUNDARY))
+    return (
+        Let(apart, sp.Abs(ahead - value)),
+        Let(real("simple"), Select(simple, _YES, _NO), "a root that is crossed"),
+        Let(real("next_touching"), Select(sp.And(found, sp.Lt(real("simple"), _HALF)), _YES, _NO), "look at the reference again"),
+    )
 
 
 def _crossing(crossing: sp.Symbol) -> tuple[Let, ...]:
@@ -129,7 +151,7 @@ def _crossing(crossing: sp.Symbol) -> tuple[Let, ...]:
         sp.And(ahead, sp.Le(outward, 0), sp.Gt(arrived, 0)), sp.And(sp.Lt(side, 0), sp.Lt(outward, 0), sp.Ge(arrived, 0))
     )
     usable = sp.And(sp.Gt(real("usable"), _HALF), sp.Gt(before, _HALF))
-    scanned = sp.And(sp.Gt(real("scanning"), _HALF), sp.Lt(real("first"), _HALF))
+    scanned = sp.And(sp.Gt(real("scanning"), _HALF), sp.Lt(real("first"), _HALF), sp.Lt(real("touching"), _HALF))
     return (
         Let(previous, Select(ahead, real("ahead"), real("behind"))),
         Let(before, Select(ahead, real("usable_ahead"), real("usable_behind"))),
@@ -149,7 +171,8 @@ def _closing(trial: Trial, start: sp.Expr) -> tuple[Let, ...]:
     is_scanning = sp.Gt(real("scanning"), _HALF)
     on_low = sp.Gt(real("on_low"), _HALF)
     settled = sp.And(sp.Not(is_scanning), sp.Or(sp.Le(sp.Abs(value), _ROOT), sp.Ge(closing, _REFINEMENTS)))
-    vanishes = sp.And(sp.Gt(real("settled"), _HALF), sp.Le(sp.Abs(value), BOUNDARY), trial.possible, trial.fits)
+    ended = sp.Or(sp.Gt(real("settled"), _HALF), sp.Gt(real("touching"), _HALF))
+    vanishes = sp.And(ended, sp.Le(sp.Abs(value), BOUNDARY), trial.possible, trial.fits)
     goes_on = sp.Or(
         sp.And(is_scanning, sp.Gt(real("crosses"), _HALF)), sp.And(sp.Not(is_scanning), sp.Lt(real("settled"), _HALF))
     )
