@@ -45,9 +45,15 @@ IMPOSSIBLE = {
     "rails on a line": ("Kin_Tripod_P3Z", {"arm_length": 269.0}, LINE, "line"),
     "rails nowhere": ("Kin_Tripod_P3Z", {"arm_length": 269.0}, {}, "origin"),
     "a plate larger than the rails": ("Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 150.01}, "rail"),
+    "a plate larger than rail 2": (
+        "Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 20.0, "rail_x_2": -9.0, "rail_y_2": -9.0}, "rail 2"
+    ),
+    "a plate larger than rail 3": (
+        "Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 20.0, "rail_x_3": 10.0, "rail_y_3": -10.0}, "rail 3"
+    ),
     "arms all the same way": ("Kin_Delta_P3C_Type3", DELTA, {f"azimuth_{i}": 30.0 for i in "123"}, "azimuth"),
     "two arms the same way": ("Kin_Delta_P3C_Type3", DELTA, {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": 90.0}, "azimuth"),
-}
+}  # fmt: skip
 POSSIBLE = {
     "a plate as small as its joints": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 20.0, "distance": 40.0}),
     "rods that just reach": ("Kin_Tripod_Rotary", TRIPOD, {"arm_length_2": 340.01}),

@@ -81,7 +81,7 @@ def test_a_way_out_ends_at_a_singularity_or_a_bound(machines: tuple[LoopMachine,
     rng = np.random.default_rng(4)
     reasons = []
     for machine in machines:
-        for axes in machine.draw(12, rng):
+        for axes in machine.draw(6, rng):
             start = machine.closure.poses(axes[None])[0][0]
             direction = np.zeros(3)
             direction[machine.closure.task] = rng.normal(size=len(machine.closure.task))
