@@ -83,7 +83,7 @@ def setup_program(mechanism: Mechanism, parameters: tuple[Parameter, ...], hoist
         outputs += _limit_outputs(quantity.name)
     if mechanism.task.turning is Turning.FULL:
         body += machine_statements(mechanism)
-        outputs += [Output(n.name, n) for n in machine_constants(mechanism)]
+        outputs += [Output(n.name, n) for n in machine_constants()]
     else:
         body.append(Let(SCALE, machine_scale(parameters), "a length of the machine"))
         outputs.append(Output(SCALE.name, SCALE))

@@ -156,10 +156,9 @@ def _at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
     )
 
 
-def machine_constants(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+def machine_constants() -> tuple[sp.Symbol, ...]:
     """Those of these names that other programs may read."""
-    arms = (n for rod in mechanism.rods for n in names("home_arm", rod))
-    return (*HOME_ROTATION, *arms, RADIUS, SCALE, ASSEMBLY_SIGN)
+    return (*HOME_ROTATION, RADIUS, SCALE, ASSEMBLY_SIGN)
 
 
 def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[Statement, ...]:

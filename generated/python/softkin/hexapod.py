@@ -137,24 +137,6 @@ class Constants(NamedTuple):
     home_r31: float
     home_r32: float
     home_r33: float
-    home_arm_1_x: float
-    home_arm_1_y: float
-    home_arm_1_z: float
-    home_arm_2_x: float
-    home_arm_2_y: float
-    home_arm_2_z: float
-    home_arm_3_x: float
-    home_arm_3_y: float
-    home_arm_3_z: float
-    home_arm_4_x: float
-    home_arm_4_y: float
-    home_arm_4_z: float
-    home_arm_5_x: float
-    home_arm_5_y: float
-    home_arm_5_z: float
-    home_arm_6_x: float
-    home_arm_6_y: float
-    home_arm_6_z: float
     platform_radius: float
     machine_scale: float
     assembly_sign: float
@@ -1000,267 +982,16 @@ class Hexapod(IterativeForward):
             highest_l5=highest_l5, lower_l6=effective_lower_l6, upper_l6=effective_upper_l6,
             unlimited_l6=unlimited_l6, lowest_l6=lowest_l6, highest_l6=highest_l6, home_r11=home_r11,
             home_r12=home_r12, home_r13=home_r13, home_r21=home_r21, home_r22=home_r22, home_r23=home_r23,
-            home_r31=home_r31, home_r32=home_r32, home_r33=home_r33, home_arm_1_x=home_arm_1_x,
-            home_arm_1_y=home_arm_1_y, home_arm_1_z=home_arm_1_z, home_arm_2_x=home_arm_2_x,
-            home_arm_2_y=home_arm_2_y, home_arm_2_z=home_arm_2_z, home_arm_3_x=home_arm_3_x,
-            home_arm_3_y=home_arm_3_y, home_arm_3_z=home_arm_3_z, home_arm_4_x=home_arm_4_x,
-            home_arm_4_y=home_arm_4_y, home_arm_4_z=home_arm_4_z, home_arm_5_x=home_arm_5_x,
-            home_arm_5_y=home_arm_5_y, home_arm_5_z=home_arm_5_z, home_arm_6_x=home_arm_6_x,
-            home_arm_6_y=home_arm_6_y, home_arm_6_z=home_arm_6_z, platform_radius=platform_radius,
+            home_r31=home_r31, home_r32=home_r32, home_r33=home_r33, platform_radius=platform_radius,
             machine_scale=machine_scale, assembly_sign=assembly_sign, within=within,
         )
 
-    def _forward(self, axes: Reals) -> Pose | Status:
-        """Position, rotation and the signed margin of every branch."""
-        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
-        k = self._constants
-        assembly_sign = k.assembly_sign
-        base_1_x = k.base_1_x
-        base_1_y = k.base_1_y
-        base_1_z = k.base_1_z
-        base_2_x = k.base_2_x
-        base_2_y = k.base_2_y
-        base_2_z = k.base_2_z
-        base_3_x = k.base_3_x
-        base_3_y = k.base_3_y
-        base_3_z = k.base_3_z
-        base_4_x = k.base_4_x
-        base_4_y = k.base_4_y
-        base_4_z = k.base_4_z
-        base_5_x = k.base_5_x
-        base_5_y = k.base_5_y
-        base_5_z = k.base_5_z
-        base_6_x = k.base_6_x
-        base_6_y = k.base_6_y
-        base_6_z = k.base_6_z
-        home_arm_1_x = k.home_arm_1_x
-        home_arm_1_y = k.home_arm_1_y
-        home_arm_1_z = k.home_arm_1_z
-        home_arm_2_x = k.home_arm_2_x
-        home_arm_2_y = k.home_arm_2_y
-        home_arm_2_z = k.home_arm_2_z
-        home_arm_3_x = k.home_arm_3_x
-        home_arm_3_y = k.home_arm_3_y
-        home_arm_3_z = k.home_arm_3_z
-        home_arm_4_x = k.home_arm_4_x
-        home_arm_4_y = k.home_arm_4_y
-        home_arm_4_z = k.home_arm_4_z
-        home_arm_5_x = k.home_arm_5_x
-        home_arm_5_y = k.home_arm_5_y
-        home_arm_5_z = k.home_arm_5_z
-        home_arm_6_x = k.home_arm_6_x
-        home_arm_6_y = k.home_arm_6_y
-        home_arm_6_z = k.home_arm_6_z
-        home_r11 = k.home_r11
-        home_r12 = k.home_r12
-        home_r13 = k.home_r13
-        home_r21 = k.home_r21
-        home_r22 = k.home_r22
-        home_r23 = k.home_r23
-        home_r31 = k.home_r31
-        home_r32 = k.home_r32
-        home_r33 = k.home_r33
-        home_x = k.home_x
-        home_y = k.home_y
-        home_z = k.home_z
-        machine_scale = k.machine_scale
-        offset_l1 = k.offset_l1
-        offset_l2 = k.offset_l2
-        offset_l3 = k.offset_l3
-        offset_l4 = k.offset_l4
-        offset_l5 = k.offset_l5
-        offset_l6 = k.offset_l6
-        platform_radius = k.platform_radius
-        within = k.within
-        # numbers of reasonable size
-        if not (
-            abs(axis_l1) <= 1e9 and abs(axis_l2) <= 1e9 and abs(axis_l3) <= 1e9 and abs(axis_l4) <= 1e9
-            and abs(axis_l5) <= 1e9 and abs(axis_l6) <= 1e9
-        ):
-            return Status.BAD_INPUT
-        l1 = axis_l1 - offset_l1
-        l2 = axis_l2 - offset_l2
-        l3 = axis_l3 - offset_l3
-        l4 = axis_l4 - offset_l4
-        l5 = axis_l5 - offset_l5
-        l6 = axis_l6 - offset_l6
-        # the mirror that the machine does not have
-        if not (l1 > 0.0 and l2 > 0.0 and l3 > 0.0 and l4 > 0.0 and l5 > 0.0 and l6 > 0.0):
-            return Status.IMPOSSIBLE
-        # Newton's method: every pass improves the pose until the rods fit
-        x, y, z, roll, pitch, yaw, fitted = home_x, home_y, home_z, 0.0, 0.0, 0.0, 0.0
-        for _ in range(20):
-            cos_pitch = cos(pitch)
-            cos_yaw = cos(yaw)
-            turned_11 = cos_pitch*cos_yaw
-            cos_roll = cos(roll)
-            sin_roll = sin(roll)
-            sin_pitch = sin(pitch)
-            sin_yaw = sin(yaw)
-            turned_12 = cos_yaw*sin_pitch*sin_roll - cos_roll*sin_yaw
-            turned_13 = sin_roll*sin_yaw + cos_roll*cos_yaw*sin_pitch
-            arm_1_x = home_arm_1_x*turned_11 + home_arm_1_y*turned_12 + home_arm_1_z*turned_13
-            span_1_x = arm_1_x + x - base_1_x
-            turned_21 = cos_pitch*sin_yaw
-            turned_22 = cos_roll*cos_yaw + sin_pitch*sin_roll*sin_yaw
-            turned_23 = cos_roll*sin_pitch*sin_yaw - cos_yaw*sin_roll
-            arm_1_y = home_arm_1_x*turned_21 + home_arm_1_y*turned_22 + home_arm_1_z*turned_23
-            span_1_y = arm_1_y + y - base_1_y
-            turned_31 = -sin_pitch
-            turned_32 = cos_pitch*sin_roll
-            turned_33 = cos_pitch*cos_roll
-            arm_1_z = home_arm_1_x*turned_31 + home_arm_1_y*turned_32 + home_arm_1_z*turned_33
-            span_1_z = arm_1_z + z - base_1_z
-            length_1 = root(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
-            error_1 = length_1 - l1  # by what rod 1 would be too long
-            arm_2_x = home_arm_2_x*turned_11 + home_arm_2_y*turned_12 + home_arm_2_z*turned_13
-            span_2_x = arm_2_x + x - base_2_x
-            arm_2_y = home_arm_2_x*turned_21 + home_arm_2_y*turned_22 + home_arm_2_z*turned_23
-            span_2_y = arm_2_y + y - base_2_y
-            arm_2_z = home_arm_2_x*turned_31 + home_arm_2_y*turned_32 + home_arm_2_z*turned_33
-            span_2_z = arm_2_z + z - base_2_z
-            length_2 = root(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
-            error_2 = length_2 - l2  # by what rod 2 would be too long
-            arm_3_x = home_arm_3_x*turned_11 + home_arm_3_y*turned_12 + home_arm_3_z*turned_13
-            span_3_x = arm_3_x + x - base_3_x
-            arm_3_y = home_arm_3_x*turned_21 + home_arm_3_y*turned_22 + home_arm_3_z*turned_23
-            span_3_y = arm_3_y + y - base_3_y
-            arm_3_z = home_arm_3_x*turned_31 + home_arm_3_y*turned_32 + home_arm_3_z*turned_33
-            span_3_z = arm_3_z + z - base_3_z
-            length_3 = root(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
-            error_3 = length_3 - l3  # by what rod 3 would be too long
-            arm_4_x = home_arm_4_x*turned_11 + home_arm_4_y*turned_12 + home_arm_4_z*turned_13
-            span_4_x = arm_4_x + x - base_4_x
-            arm_4_y = home_arm_4_x*turned_21 + home_arm_4_y*turned_22 + home_arm_4_z*turned_23
-            span_4_y = arm_4_y + y - base_4_y
-            arm_4_z = home_arm_4_x*turned_31 + home_arm_4_y*turned_32 + home_arm_4_z*turned_33
-            span_4_z = arm_4_z + z - base_4_z
-            length_4 = root(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
-            error_4 = length_4 - l4  # by what rod 4 would be too long
-            arm_5_x = home_arm_5_x*turned_11 + home_arm_5_y*turned_12 + home_arm_5_z*turned_13
-            span_5_x = arm_5_x + x - base_5_x
-            arm_5_y = home_arm_5_x*turned_21 + home_arm_5_y*turned_22 + home_arm_5_z*turned_23
-            span_5_y = arm_5_y + y - base_5_y
-            arm_5_z = home_arm_5_x*turned_31 + home_arm_5_y*turned_32 + home_arm_5_z*turned_33
-            span_5_z = arm_5_z + z - base_5_z
-            length_5 = root(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
-            error_5 = length_5 - l5  # by what rod 5 would be too long
-            arm_6_x = home_arm_6_x*turned_11 + home_arm_6_y*turned_12 + home_arm_6_z*turned_13
-            span_6_x = arm_6_x + x - base_6_x
-            arm_6_y = home_arm_6_x*turned_21 + home_arm_6_y*turned_22 + home_arm_6_z*turned_23
-            span_6_y = arm_6_y + y - base_6_y
-            arm_6_z = home_arm_6_x*turned_31 + home_arm_6_y*turned_32 + home_arm_6_z*turned_33
-            span_6_z = arm_6_z + z - base_6_z
-            length_6 = root(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
-            error_6 = length_6 - l6  # by what rod 6 would be too long
-            # whether the rods fit
-            fit = (
-                1.0
-                if (
-                    abs(error_1) <= within
-                ) and (abs(error_2) <= within) and (abs(error_3) <= within) and (abs(error_4) <= within) and (abs(error_5) <= within) and (abs(error_6) <= within)
-                else 0.0
-            )
-            divisor_1 = length_1 if length_1 > 1e-9*machine_scale else 1.0
-            along_1_x = span_1_x/divisor_1
-            along_1_y = span_1_y/divisor_1
-            along_1_z = span_1_z/divisor_1
-            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-            divisor_2 = length_2 if length_2 > 1e-9*machine_scale else 1.0
-            along_2_x = span_2_x/divisor_2
-            along_2_y = span_2_y/divisor_2
-            along_2_z = span_2_z/divisor_2
-            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-            divisor_3 = length_3 if length_3 > 1e-9*machine_scale else 1.0
-            along_3_x = span_3_x/divisor_3
-            along_3_y = span_3_y/divisor_3
-            along_3_z = span_3_z/divisor_3
-            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-            divisor_4 = length_4 if length_4 > 1e-9*machine_scale else 1.0
-            along_4_x = span_4_x/divisor_4
-            along_4_y = span_4_y/divisor_4
-            along_4_z = span_4_z/divisor_4
-            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-            divisor_5 = length_5 if length_5 > 1e-9*machine_scale else 1.0
-            along_5_x = span_5_x/divisor_5
-            along_5_y = span_5_y/divisor_5
-            along_5_z = span_5_z/divisor_5
-            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-            divisor_6 = length_6 if length_6 > 1e-9*machine_scale else 1.0
-            along_6_x = span_6_x/divisor_6
-            along_6_y = span_6_y/divisor_6
-            along_6_z = span_6_z/divisor_6
-            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
-            # the twist that lets the errors vanish
-            determinant, x_rate, y_rate, z_rate, swing_x, swing_y, swing_z = solve(
-                (
-                    (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                    (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                    (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                    (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                    (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                    (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
-                ),
-                ((-error_1,), (-error_2,), (-error_3,), (-error_4,), (-error_5,), (-error_6,)),
-            )
-            spin_x = swing_x/platform_radius
-            spin_y = swing_y/platform_radius
-            cos_pitch_divisor = cos_pitch if abs(cos_pitch) > 1e-11 else 1.0
-            roll_rate = (spin_x*cos_yaw + spin_y*sin_yaw)/cos_pitch_divisor
-            pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw
-            spin_z = swing_z/platform_radius
-            yaw_rate = spin_z + roll_rate*sin_pitch
-            # of the step, in machines and radians
-            size = root(
-                pitch_rate*pitch_rate + roll_rate*roll_rate + yaw_rate*yaw_rate
-                + x_rate*x_rate/(machine_scale*machine_scale) + y_rate*y_rate/(machine_scale*machine_scale)
-                + z_rate*z_rate/(machine_scale*machine_scale)
-            )
-            stretch = 2.0*size if size > 0.5 else 1.0
-            if fit > 0.5 and fitted > 0.5:
-                break
-            x = x + x_rate/stretch
-            y = y + y_rate/stretch
-            z = z + z_rate/stretch
-            roll = roll + roll_rate/stretch
-            pitch = pitch + pitch_rate/stretch
-            yaw = yaw + yaw_rate/stretch
-            fitted = fit
-        else:
-            return Status.IMPOSSIBLE
-        # the other assembly mode
-        if not (assembly_sign*determinant > 0.0):
-            return Status.IMPOSSIBLE
-        r11 = home_r11*turned_11 + home_r21*turned_12 + home_r31*turned_13
-        r12 = home_r12*turned_11 + home_r22*turned_12 + home_r32*turned_13
-        r13 = home_r13*turned_11 + home_r23*turned_12 + home_r33*turned_13
-        r21 = home_r11*turned_21 + home_r21*turned_22 + home_r31*turned_23
-        r22 = home_r12*turned_21 + home_r22*turned_22 + home_r32*turned_23
-        r23 = home_r13*turned_21 + home_r23*turned_22 + home_r33*turned_23
-        r31 = home_r11*turned_31 + home_r21*turned_32 + home_r31*turned_33
-        r32 = home_r12*turned_31 + home_r22*turned_32 + home_r32*turned_33
-        r33 = home_r13*turned_31 + home_r23*turned_32 + home_r33*turned_33
-        return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ())
-
-    def _forward_from(self, axes: Reals, start_position: Vector, start_rotation: Rotation) -> Pose | Status:
-        """The same, found from a given start."""
-        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
-        start_x, start_y, start_z = start_position
+    def _find_platform(self, given: Reals) -> Reals | Status:
+        """The pose of the platform at its axis values, the rows of A there, and their determinant."""
         (
-            start_r11, start_r12, start_r13,
-        ), (start_r21, start_r22, start_r23), (start_r31, start_r32, start_r33) = start_rotation
+            axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,
+            start_r22, start_r23, start_r31, start_r32, start_r33, start_x, start_y, start_z,
+        ) = given
         k = self._constants
         assembly_sign = k.assembly_sign
         base_1_x = k.base_1_x
@@ -1323,30 +1054,6 @@ class Hexapod(IterativeForward):
         # the mirror that the machine does not have
         if not (l1 > 0.0 and l2 > 0.0 and l3 > 0.0 and l4 > 0.0 and l5 > 0.0 and l6 > 0.0):
             return Status.IMPOSSIBLE
-        # numbers of reasonable size
-        if not (
-            abs(start_r11) <= 1e9 and abs(start_r12) <= 1e9 and abs(start_r13) <= 1e9 and abs(start_r21) <= 1e9
-            and abs(start_r22) <= 1e9 and abs(start_r23) <= 1e9 and abs(start_r31) <= 1e9 and abs(start_r32) <= 1e9
-            and abs(start_r33) <= 1e9 and abs(start_x) <= 1e9 and abs(start_y) <= 1e9 and abs(start_z) <= 1e9
-        ):
-            return Status.BAD_INPUT
-        # columns of length one, at right angles
-        if not (
-            abs(start_r11*start_r12 + start_r21*start_r22 + start_r31*start_r32) <= 1e-6
-            and abs(start_r11*start_r13 + start_r21*start_r23 + start_r31*start_r33) <= 1e-6
-            and abs(start_r12*start_r13 + start_r22*start_r23 + start_r32*start_r33) <= 1e-6
-            and abs(start_r11*start_r11 + start_r21*start_r21 + start_r31*start_r31 - 1.0) <= 1e-6
-            and abs(start_r12*start_r12 + start_r22*start_r22 + start_r32*start_r32 - 1.0) <= 1e-6
-            and abs(start_r13*start_r13 + start_r23*start_r23 + start_r33*start_r33 - 1.0) <= 1e-6
-        ):
-            return Status.BAD_INPUT
-        # a right-handed frame
-        if not (
-            start_r11*(start_r22*start_r33 - start_r23*start_r32)
-            + (start_r13*start_r32 - start_r12*start_r33)*start_r21
-            + (start_r12*start_r23 - start_r13*start_r22)*start_r31 > 0.0
-        ):
-            return Status.BAD_INPUT
         start_arm_1_x = platform_1_x*start_r11 + platform_1_y*start_r12 + platform_1_z*start_r13
         start_arm_1_y = platform_1_x*start_r21 + platform_1_y*start_r22 + platform_1_z*start_r23
         start_arm_1_z = platform_1_x*start_r31 + platform_1_y*start_r32 + platform_1_z*start_r33
@@ -1530,49 +1237,18 @@ class Hexapod(IterativeForward):
         r31 = start_r11*turned_31 + start_r21*turned_32 + start_r31*turned_33
         r32 = start_r12*turned_31 + start_r22*turned_32 + start_r32*turned_33
         r33 = start_r13*turned_31 + start_r23*turned_32 + start_r33*turned_33
-        return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ())
+        return (
+            x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, determinant, along_1_x, along_1_y, along_1_z,
+            moment_1_x, moment_1_y, moment_1_z, along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
+            along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z, along_4_x, along_4_y, along_4_z,
+            moment_4_x, moment_4_y, moment_4_z, along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z,
+            along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z,
+        )
 
-    def _orientation(self, axes: Reals) -> Rotation | Status:
-        """The rotation of the frame."""
+    def _forward(self, axes: Reals) -> Pose | Status:
+        """Position, rotation and the signed margin of every branch."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        base_1_x = k.base_1_x
-        base_1_y = k.base_1_y
-        base_1_z = k.base_1_z
-        base_2_x = k.base_2_x
-        base_2_y = k.base_2_y
-        base_2_z = k.base_2_z
-        base_3_x = k.base_3_x
-        base_3_y = k.base_3_y
-        base_3_z = k.base_3_z
-        base_4_x = k.base_4_x
-        base_4_y = k.base_4_y
-        base_4_z = k.base_4_z
-        base_5_x = k.base_5_x
-        base_5_y = k.base_5_y
-        base_5_z = k.base_5_z
-        base_6_x = k.base_6_x
-        base_6_y = k.base_6_y
-        base_6_z = k.base_6_z
-        home_arm_1_x = k.home_arm_1_x
-        home_arm_1_y = k.home_arm_1_y
-        home_arm_1_z = k.home_arm_1_z
-        home_arm_2_x = k.home_arm_2_x
-        home_arm_2_y = k.home_arm_2_y
-        home_arm_2_z = k.home_arm_2_z
-        home_arm_3_x = k.home_arm_3_x
-        home_arm_3_y = k.home_arm_3_y
-        home_arm_3_z = k.home_arm_3_z
-        home_arm_4_x = k.home_arm_4_x
-        home_arm_4_y = k.home_arm_4_y
-        home_arm_4_z = k.home_arm_4_z
-        home_arm_5_x = k.home_arm_5_x
-        home_arm_5_y = k.home_arm_5_y
-        home_arm_5_z = k.home_arm_5_z
-        home_arm_6_x = k.home_arm_6_x
-        home_arm_6_y = k.home_arm_6_y
-        home_arm_6_z = k.home_arm_6_z
         home_r11 = k.home_r11
         home_r12 = k.home_r12
         home_r13 = k.home_r13
@@ -1585,195 +1261,89 @@ class Hexapod(IterativeForward):
         home_x = k.home_x
         home_y = k.home_y
         home_z = k.home_z
-        machine_scale = k.machine_scale
-        offset_l1 = k.offset_l1
-        offset_l2 = k.offset_l2
-        offset_l3 = k.offset_l3
-        offset_l4 = k.offset_l4
-        offset_l5 = k.offset_l5
-        offset_l6 = k.offset_l6
-        platform_radius = k.platform_radius
-        within = k.within
+        # the platform on its rods, searched from the home pose
+        found = self._find_platform(
+            (
+                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
+                home_r22, home_r23, home_r31, home_r32, home_r33, home_x, home_y, home_z,
+            )
+        )
+        if isinstance(found, Status):
+            return found
+        x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, *_ = found
+        return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ())
+
+    def _forward_from(self, axes: Reals, start_position: Vector, start_rotation: Rotation) -> Pose | Status:
+        """The same, found from a given start."""
+        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
+        start_x, start_y, start_z = start_position
+        (
+            (start_r11, start_r12, start_r13),
+            (start_r21, start_r22, start_r23),
+            (start_r31, start_r32, start_r33),
+        ) = start_rotation
         # numbers of reasonable size
         if not (
-            abs(axis_l1) <= 1e9 and abs(axis_l2) <= 1e9 and abs(axis_l3) <= 1e9 and abs(axis_l4) <= 1e9
-            and abs(axis_l5) <= 1e9 and abs(axis_l6) <= 1e9
+            abs(start_r11) <= 1e9 and abs(start_r12) <= 1e9 and abs(start_r13) <= 1e9 and abs(start_r21) <= 1e9
+            and abs(start_r22) <= 1e9 and abs(start_r23) <= 1e9 and abs(start_r31) <= 1e9 and abs(start_r32) <= 1e9
+            and abs(start_r33) <= 1e9 and abs(start_x) <= 1e9 and abs(start_y) <= 1e9 and abs(start_z) <= 1e9
         ):
             return Status.BAD_INPUT
-        l1 = axis_l1 - offset_l1
-        l2 = axis_l2 - offset_l2
-        l3 = axis_l3 - offset_l3
-        l4 = axis_l4 - offset_l4
-        l5 = axis_l5 - offset_l5
-        l6 = axis_l6 - offset_l6
-        # the mirror that the machine does not have
-        if not (l1 > 0.0 and l2 > 0.0 and l3 > 0.0 and l4 > 0.0 and l5 > 0.0 and l6 > 0.0):
-            return Status.IMPOSSIBLE
-        # Newton's method: every pass improves the pose until the rods fit
-        x, y, z, roll, pitch, yaw, fitted = home_x, home_y, home_z, 0.0, 0.0, 0.0, 0.0
-        for _ in range(20):
-            cos_pitch = cos(pitch)
-            cos_yaw = cos(yaw)
-            turned_11 = cos_pitch*cos_yaw
-            cos_roll = cos(roll)
-            sin_roll = sin(roll)
-            sin_pitch = sin(pitch)
-            sin_yaw = sin(yaw)
-            turned_12 = cos_yaw*sin_pitch*sin_roll - cos_roll*sin_yaw
-            turned_13 = sin_roll*sin_yaw + cos_roll*cos_yaw*sin_pitch
-            arm_1_x = home_arm_1_x*turned_11 + home_arm_1_y*turned_12 + home_arm_1_z*turned_13
-            span_1_x = arm_1_x + x - base_1_x
-            turned_21 = cos_pitch*sin_yaw
-            turned_22 = cos_roll*cos_yaw + sin_pitch*sin_roll*sin_yaw
-            turned_23 = cos_roll*sin_pitch*sin_yaw - cos_yaw*sin_roll
-            arm_1_y = home_arm_1_x*turned_21 + home_arm_1_y*turned_22 + home_arm_1_z*turned_23
-            span_1_y = arm_1_y + y - base_1_y
-            turned_31 = -sin_pitch
-            turned_32 = cos_pitch*sin_roll
-            turned_33 = cos_pitch*cos_roll
-            arm_1_z = home_arm_1_x*turned_31 + home_arm_1_y*turned_32 + home_arm_1_z*turned_33
-            span_1_z = arm_1_z + z - base_1_z
-            length_1 = root(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
-            error_1 = length_1 - l1  # by what rod 1 would be too long
-            arm_2_x = home_arm_2_x*turned_11 + home_arm_2_y*turned_12 + home_arm_2_z*turned_13
-            span_2_x = arm_2_x + x - base_2_x
-            arm_2_y = home_arm_2_x*turned_21 + home_arm_2_y*turned_22 + home_arm_2_z*turned_23
-            span_2_y = arm_2_y + y - base_2_y
-            arm_2_z = home_arm_2_x*turned_31 + home_arm_2_y*turned_32 + home_arm_2_z*turned_33
-            span_2_z = arm_2_z + z - base_2_z
-            length_2 = root(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
-            error_2 = length_2 - l2  # by what rod 2 would be too long
-            arm_3_x = home_arm_3_x*turned_11 + home_arm_3_y*turned_12 + home_arm_3_z*turned_13
-            span_3_x = arm_3_x + x - base_3_x
-            arm_3_y = home_arm_3_x*turned_21 + home_arm_3_y*turned_22 + home_arm_3_z*turned_23
-            span_3_y = arm_3_y + y - base_3_y
-            arm_3_z = home_arm_3_x*turned_31 + home_arm_3_y*turned_32 + home_arm_3_z*turned_33
-            span_3_z = arm_3_z + z - base_3_z
-            length_3 = root(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
-            error_3 = length_3 - l3  # by what rod 3 would be too long
-            arm_4_x = home_arm_4_x*turned_11 + home_arm_4_y*turned_12 + home_arm_4_z*turned_13
-            span_4_x = arm_4_x + x - base_4_x
-            arm_4_y = home_arm_4_x*turned_21 + home_arm_4_y*turned_22 + home_arm_4_z*turned_23
-            span_4_y = arm_4_y + y - base_4_y
-            arm_4_z = home_arm_4_x*turned_31 + home_arm_4_y*turned_32 + home_arm_4_z*turned_33
-            span_4_z = arm_4_z + z - base_4_z
-            length_4 = root(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
-            error_4 = length_4 - l4  # by what rod 4 would be too long
-            arm_5_x = home_arm_5_x*turned_11 + home_arm_5_y*turned_12 + home_arm_5_z*turned_13
-            span_5_x = arm_5_x + x - base_5_x
-            arm_5_y = home_arm_5_x*turned_21 + home_arm_5_y*turned_22 + home_arm_5_z*turned_23
-            span_5_y = arm_5_y + y - base_5_y
-            arm_5_z = home_arm_5_x*turned_31 + home_arm_5_y*turned_32 + home_arm_5_z*turned_33
-            span_5_z = arm_5_z + z - base_5_z
-            length_5 = root(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
-            error_5 = length_5 - l5  # by what rod 5 would be too long
-            arm_6_x = home_arm_6_x*turned_11 + home_arm_6_y*turned_12 + home_arm_6_z*turned_13
-            span_6_x = arm_6_x + x - base_6_x
-            arm_6_y = home_arm_6_x*turned_21 + home_arm_6_y*turned_22 + home_arm_6_z*turned_23
-            span_6_y = arm_6_y + y - base_6_y
-            arm_6_z = home_arm_6_x*turned_31 + home_arm_6_y*turned_32 + home_arm_6_z*turned_33
-            span_6_z = arm_6_z + z - base_6_z
-            length_6 = root(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
-            error_6 = length_6 - l6  # by what rod 6 would be too long
-            # whether the rods fit
-            fit = (
-                1.0
-                if (
-                    abs(error_1) <= within
-                ) and (abs(error_2) <= within) and (abs(error_3) <= within) and (abs(error_4) <= within) and (abs(error_5) <= within) and (abs(error_6) <= within)
-                else 0.0
+        # columns of length one, at right angles
+        if not (
+            abs(start_r11*start_r12 + start_r21*start_r22 + start_r31*start_r32) <= 1e-6
+            and abs(start_r11*start_r13 + start_r21*start_r23 + start_r31*start_r33) <= 1e-6
+            and abs(start_r12*start_r13 + start_r22*start_r23 + start_r32*start_r33) <= 1e-6
+            and abs(start_r11*start_r11 + start_r21*start_r21 + start_r31*start_r31 - 1.0) <= 1e-6
+            and abs(start_r12*start_r12 + start_r22*start_r22 + start_r32*start_r32 - 1.0) <= 1e-6
+            and abs(start_r13*start_r13 + start_r23*start_r23 + start_r33*start_r33 - 1.0) <= 1e-6
+        ):
+            return Status.BAD_INPUT
+        # a right-handed frame
+        if not (
+            start_r11*(start_r22*start_r33 - start_r23*start_r32)
+            + (start_r13*start_r32 - start_r12*start_r33)*start_r21
+            + (start_r12*start_r23 - start_r13*start_r22)*start_r31 > 0.0
+        ):
+            return Status.BAD_INPUT
+        # the platform on its rods, searched from the given start
+        found = self._find_platform(
+            (
+                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,
+                start_r22, start_r23, start_r31, start_r32, start_r33, start_x, start_y, start_z,
             )
-            divisor_1 = length_1 if length_1 > 1e-9*machine_scale else 1.0
-            along_1_x = span_1_x/divisor_1
-            along_1_y = span_1_y/divisor_1
-            along_1_z = span_1_z/divisor_1
-            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-            divisor_2 = length_2 if length_2 > 1e-9*machine_scale else 1.0
-            along_2_x = span_2_x/divisor_2
-            along_2_y = span_2_y/divisor_2
-            along_2_z = span_2_z/divisor_2
-            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-            divisor_3 = length_3 if length_3 > 1e-9*machine_scale else 1.0
-            along_3_x = span_3_x/divisor_3
-            along_3_y = span_3_y/divisor_3
-            along_3_z = span_3_z/divisor_3
-            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-            divisor_4 = length_4 if length_4 > 1e-9*machine_scale else 1.0
-            along_4_x = span_4_x/divisor_4
-            along_4_y = span_4_y/divisor_4
-            along_4_z = span_4_z/divisor_4
-            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-            divisor_5 = length_5 if length_5 > 1e-9*machine_scale else 1.0
-            along_5_x = span_5_x/divisor_5
-            along_5_y = span_5_y/divisor_5
-            along_5_z = span_5_z/divisor_5
-            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-            divisor_6 = length_6 if length_6 > 1e-9*machine_scale else 1.0
-            along_6_x = span_6_x/divisor_6
-            along_6_y = span_6_y/divisor_6
-            along_6_z = span_6_z/divisor_6
-            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
-            # the twist that lets the errors vanish
-            determinant, x_rate, y_rate, z_rate, swing_x, swing_y, swing_z = solve(
-                (
-                    (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                    (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                    (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                    (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                    (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                    (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
-                ),
-                ((-error_1,), (-error_2,), (-error_3,), (-error_4,), (-error_5,), (-error_6,)),
+        )
+        if isinstance(found, Status):
+            return found
+        x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, *_ = found
+        return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ())
+
+    def _orientation(self, axes: Reals) -> Rotation | Status:
+        """The rotation of the frame."""
+        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
+        k = self._constants
+        home_r11 = k.home_r11
+        home_r12 = k.home_r12
+        home_r13 = k.home_r13
+        home_r21 = k.home_r21
+        home_r22 = k.home_r22
+        home_r23 = k.home_r23
+        home_r31 = k.home_r31
+        home_r32 = k.home_r32
+        home_r33 = k.home_r33
+        home_x = k.home_x
+        home_y = k.home_y
+        home_z = k.home_z
+        # the platform on its rods, searched from the home pose
+        found = self._find_platform(
+            (
+                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
+                home_r22, home_r23, home_r31, home_r32, home_r33, home_x, home_y, home_z,
             )
-            spin_x = swing_x/platform_radius
-            spin_y = swing_y/platform_radius
-            cos_pitch_divisor = cos_pitch if abs(cos_pitch) > 1e-11 else 1.0
-            roll_rate = (spin_x*cos_yaw + spin_y*sin_yaw)/cos_pitch_divisor
-            pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw
-            spin_z = swing_z/platform_radius
-            yaw_rate = spin_z + roll_rate*sin_pitch
-            # of the step, in machines and radians
-            size = root(
-                pitch_rate*pitch_rate + roll_rate*roll_rate + yaw_rate*yaw_rate
-                + x_rate*x_rate/(machine_scale*machine_scale) + y_rate*y_rate/(machine_scale*machine_scale)
-                + z_rate*z_rate/(machine_scale*machine_scale)
-            )
-            stretch = 2.0*size if size > 0.5 else 1.0
-            if fit > 0.5 and fitted > 0.5:
-                break
-            x = x + x_rate/stretch
-            y = y + y_rate/stretch
-            z = z + z_rate/stretch
-            roll = roll + roll_rate/stretch
-            pitch = pitch + pitch_rate/stretch
-            yaw = yaw + yaw_rate/stretch
-            fitted = fit
-        else:
-            return Status.IMPOSSIBLE
-        # the other assembly mode
-        if not (assembly_sign*determinant > 0.0):
-            return Status.IMPOSSIBLE
-        r11 = home_r11*turned_11 + home_r21*turned_12 + home_r31*turned_13
-        r12 = home_r12*turned_11 + home_r22*turned_12 + home_r32*turned_13
-        r13 = home_r13*turned_11 + home_r23*turned_12 + home_r33*turned_13
-        r21 = home_r11*turned_21 + home_r21*turned_22 + home_r31*turned_23
-        r22 = home_r12*turned_21 + home_r22*turned_22 + home_r32*turned_23
-        r23 = home_r13*turned_21 + home_r23*turned_22 + home_r33*turned_23
-        r31 = home_r11*turned_31 + home_r21*turned_32 + home_r31*turned_33
-        r32 = home_r12*turned_31 + home_r22*turned_32 + home_r32*turned_33
-        r33 = home_r13*turned_31 + home_r23*turned_32 + home_r33*turned_33
+        )
+        if isinstance(found, Status):
+            return found
+        _, _, _, r11, r12, r13, r21, r22, r23, r31, r32, r33, *_ = found
         return ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33))
 
     def _branch(
@@ -2011,452 +1581,63 @@ class Hexapod(IterativeForward):
         """The margins, each zero at its singularity."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        base_1_x = k.base_1_x
-        base_1_y = k.base_1_y
-        base_1_z = k.base_1_z
-        base_2_x = k.base_2_x
-        base_2_y = k.base_2_y
-        base_2_z = k.base_2_z
-        base_3_x = k.base_3_x
-        base_3_y = k.base_3_y
-        base_3_z = k.base_3_z
-        base_4_x = k.base_4_x
-        base_4_y = k.base_4_y
-        base_4_z = k.base_4_z
-        base_5_x = k.base_5_x
-        base_5_y = k.base_5_y
-        base_5_z = k.base_5_z
-        base_6_x = k.base_6_x
-        base_6_y = k.base_6_y
-        base_6_z = k.base_6_z
-        home_arm_1_x = k.home_arm_1_x
-        home_arm_1_y = k.home_arm_1_y
-        home_arm_1_z = k.home_arm_1_z
-        home_arm_2_x = k.home_arm_2_x
-        home_arm_2_y = k.home_arm_2_y
-        home_arm_2_z = k.home_arm_2_z
-        home_arm_3_x = k.home_arm_3_x
-        home_arm_3_y = k.home_arm_3_y
-        home_arm_3_z = k.home_arm_3_z
-        home_arm_4_x = k.home_arm_4_x
-        home_arm_4_y = k.home_arm_4_y
-        home_arm_4_z = k.home_arm_4_z
-        home_arm_5_x = k.home_arm_5_x
-        home_arm_5_y = k.home_arm_5_y
-        home_arm_5_z = k.home_arm_5_z
-        home_arm_6_x = k.home_arm_6_x
-        home_arm_6_y = k.home_arm_6_y
-        home_arm_6_z = k.home_arm_6_z
+        home_r11 = k.home_r11
+        home_r12 = k.home_r12
+        home_r13 = k.home_r13
+        home_r21 = k.home_r21
+        home_r22 = k.home_r22
+        home_r23 = k.home_r23
+        home_r31 = k.home_r31
+        home_r32 = k.home_r32
+        home_r33 = k.home_r33
         home_x = k.home_x
         home_y = k.home_y
         home_z = k.home_z
-        machine_scale = k.machine_scale
-        offset_l1 = k.offset_l1
-        offset_l2 = k.offset_l2
-        offset_l3 = k.offset_l3
-        offset_l4 = k.offset_l4
-        offset_l5 = k.offset_l5
-        offset_l6 = k.offset_l6
-        platform_radius = k.platform_radius
-        within = k.within
-        # numbers of reasonable size
-        if not (
-            abs(axis_l1) <= 1e9 and abs(axis_l2) <= 1e9 and abs(axis_l3) <= 1e9 and abs(axis_l4) <= 1e9
-            and abs(axis_l5) <= 1e9 and abs(axis_l6) <= 1e9
-        ):
-            return Status.BAD_INPUT
-        l1 = axis_l1 - offset_l1
-        l2 = axis_l2 - offset_l2
-        l3 = axis_l3 - offset_l3
-        l4 = axis_l4 - offset_l4
-        l5 = axis_l5 - offset_l5
-        l6 = axis_l6 - offset_l6
-        # the mirror that the machine does not have
-        if not (l1 > 0.0 and l2 > 0.0 and l3 > 0.0 and l4 > 0.0 and l5 > 0.0 and l6 > 0.0):
-            return Status.IMPOSSIBLE
-        # Newton's method: every pass improves the pose until the rods fit
-        x, y, z, roll, pitch, yaw, fitted = home_x, home_y, home_z, 0.0, 0.0, 0.0, 0.0
-        for _ in range(20):
-            cos_pitch = cos(pitch)
-            cos_yaw = cos(yaw)
-            turned_11 = cos_pitch*cos_yaw
-            cos_roll = cos(roll)
-            sin_roll = sin(roll)
-            sin_pitch = sin(pitch)
-            sin_yaw = sin(yaw)
-            turned_12 = cos_yaw*sin_pitch*sin_roll - cos_roll*sin_yaw
-            turned_13 = sin_roll*sin_yaw + cos_roll*cos_yaw*sin_pitch
-            arm_1_x = home_arm_1_x*turned_11 + home_arm_1_y*turned_12 + home_arm_1_z*turned_13
-            span_1_x = arm_1_x + x - base_1_x
-            turned_21 = cos_pitch*sin_yaw
-            turned_22 = cos_roll*cos_yaw + sin_pitch*sin_roll*sin_yaw
-            turned_23 = cos_roll*sin_pitch*sin_yaw - cos_yaw*sin_roll
-            arm_1_y = home_arm_1_x*turned_21 + home_arm_1_y*turned_22 + home_arm_1_z*turned_23
-            span_1_y = arm_1_y + y - base_1_y
-            turned_31 = -sin_pitch
-            turned_32 = cos_pitch*sin_roll
-            turned_33 = cos_pitch*cos_roll
-            arm_1_z = home_arm_1_x*turned_31 + home_arm_1_y*turned_32 + home_arm_1_z*turned_33
-            span_1_z = arm_1_z + z - base_1_z
-            length_1 = root(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
-            error_1 = length_1 - l1  # by what rod 1 would be too long
-            arm_2_x = home_arm_2_x*turned_11 + home_arm_2_y*turned_12 + home_arm_2_z*turned_13
-            span_2_x = arm_2_x + x - base_2_x
-            arm_2_y = home_arm_2_x*turned_21 + home_arm_2_y*turned_22 + home_arm_2_z*turned_23
-            span_2_y = arm_2_y + y - base_2_y
-            arm_2_z = home_arm_2_x*turned_31 + home_arm_2_y*turned_32 + home_arm_2_z*turned_33
-            span_2_z = arm_2_z + z - base_2_z
-            length_2 = root(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
-            error_2 = length_2 - l2  # by what rod 2 would be too long
-            arm_3_x = home_arm_3_x*turned_11 + home_arm_3_y*turned_12 + home_arm_3_z*turned_13
-            span_3_x = arm_3_x + x - base_3_x
-            arm_3_y = home_arm_3_x*turned_21 + home_arm_3_y*turned_22 + home_arm_3_z*turned_23
-            span_3_y = arm_3_y + y - base_3_y
-            arm_3_z = home_arm_3_x*turned_31 + home_arm_3_y*turned_32 + home_arm_3_z*turned_33
-            span_3_z = arm_3_z + z - base_3_z
-            length_3 = root(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
-            error_3 = length_3 - l3  # by what rod 3 would be too long
-            arm_4_x = home_arm_4_x*turned_11 + home_arm_4_y*turned_12 + home_arm_4_z*turned_13
-            span_4_x = arm_4_x + x - base_4_x
-            arm_4_y = home_arm_4_x*turned_21 + home_arm_4_y*turned_22 + home_arm_4_z*turned_23
-            span_4_y = arm_4_y + y - base_4_y
-            arm_4_z = home_arm_4_x*turned_31 + home_arm_4_y*turned_32 + home_arm_4_z*turned_33
-            span_4_z = arm_4_z + z - base_4_z
-            length_4 = root(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
-            error_4 = length_4 - l4  # by what rod 4 would be too long
-            arm_5_x = home_arm_5_x*turned_11 + home_arm_5_y*turned_12 + home_arm_5_z*turned_13
-            span_5_x = arm_5_x + x - base_5_x
-            arm_5_y = home_arm_5_x*turned_21 + home_arm_5_y*turned_22 + home_arm_5_z*turned_23
-            span_5_y = arm_5_y + y - base_5_y
-            arm_5_z = home_arm_5_x*turned_31 + home_arm_5_y*turned_32 + home_arm_5_z*turned_33
-            span_5_z = arm_5_z + z - base_5_z
-            length_5 = root(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
-            error_5 = length_5 - l5  # by what rod 5 would be too long
-            arm_6_x = home_arm_6_x*turned_11 + home_arm_6_y*turned_12 + home_arm_6_z*turned_13
-            span_6_x = arm_6_x + x - base_6_x
-            arm_6_y = home_arm_6_x*turned_21 + home_arm_6_y*turned_22 + home_arm_6_z*turned_23
-            span_6_y = arm_6_y + y - base_6_y
-            arm_6_z = home_arm_6_x*turned_31 + home_arm_6_y*turned_32 + home_arm_6_z*turned_33
-            span_6_z = arm_6_z + z - base_6_z
-            length_6 = root(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
-            error_6 = length_6 - l6  # by what rod 6 would be too long
-            # whether the rods fit
-            fit = (
-                1.0
-                if (
-                    abs(error_1) <= within
-                ) and (abs(error_2) <= within) and (abs(error_3) <= within) and (abs(error_4) <= within) and (abs(error_5) <= within) and (abs(error_6) <= within)
-                else 0.0
+        # the platform on its rods, searched from the home pose
+        found = self._find_platform(
+            (
+                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
+                home_r22, home_r23, home_r31, home_r32, home_r33, home_x, home_y, home_z,
             )
-            divisor_1 = length_1 if length_1 > 1e-9*machine_scale else 1.0
-            along_1_x = span_1_x/divisor_1
-            along_1_y = span_1_y/divisor_1
-            along_1_z = span_1_z/divisor_1
-            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-            divisor_2 = length_2 if length_2 > 1e-9*machine_scale else 1.0
-            along_2_x = span_2_x/divisor_2
-            along_2_y = span_2_y/divisor_2
-            along_2_z = span_2_z/divisor_2
-            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-            divisor_3 = length_3 if length_3 > 1e-9*machine_scale else 1.0
-            along_3_x = span_3_x/divisor_3
-            along_3_y = span_3_y/divisor_3
-            along_3_z = span_3_z/divisor_3
-            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-            divisor_4 = length_4 if length_4 > 1e-9*machine_scale else 1.0
-            along_4_x = span_4_x/divisor_4
-            along_4_y = span_4_y/divisor_4
-            along_4_z = span_4_z/divisor_4
-            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-            divisor_5 = length_5 if length_5 > 1e-9*machine_scale else 1.0
-            along_5_x = span_5_x/divisor_5
-            along_5_y = span_5_y/divisor_5
-            along_5_z = span_5_z/divisor_5
-            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-            divisor_6 = length_6 if length_6 > 1e-9*machine_scale else 1.0
-            along_6_x = span_6_x/divisor_6
-            along_6_y = span_6_y/divisor_6
-            along_6_z = span_6_z/divisor_6
-            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
-            # the twist that lets the errors vanish
-            determinant, x_rate, y_rate, z_rate, swing_x, swing_y, swing_z = solve(
-                (
-                    (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                    (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                    (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                    (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                    (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                    (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
-                ),
-                ((-error_1,), (-error_2,), (-error_3,), (-error_4,), (-error_5,), (-error_6,)),
-            )
-            spin_x = swing_x/platform_radius
-            spin_y = swing_y/platform_radius
-            cos_pitch_divisor = cos_pitch if abs(cos_pitch) > 1e-11 else 1.0
-            roll_rate = (spin_x*cos_yaw + spin_y*sin_yaw)/cos_pitch_divisor
-            pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw
-            spin_z = swing_z/platform_radius
-            yaw_rate = spin_z + roll_rate*sin_pitch
-            # of the step, in machines and radians
-            size = root(
-                pitch_rate*pitch_rate + roll_rate*roll_rate + yaw_rate*yaw_rate
-                + x_rate*x_rate/(machine_scale*machine_scale) + y_rate*y_rate/(machine_scale*machine_scale)
-                + z_rate*z_rate/(machine_scale*machine_scale)
-            )
-            stretch = 2.0*size if size > 0.5 else 1.0
-            if fit > 0.5 and fitted > 0.5:
-                break
-            x = x + x_rate/stretch
-            y = y + y_rate/stretch
-            z = z + z_rate/stretch
-            roll = roll + roll_rate/stretch
-            pitch = pitch + pitch_rate/stretch
-            yaw = yaw + yaw_rate/stretch
-            fitted = fit
-        else:
-            return Status.IMPOSSIBLE
-        # the other assembly mode
-        if not (assembly_sign*determinant > 0.0):
-            return Status.IMPOSSIBLE
+        )
+        if isinstance(found, Status):
+            return found
+        _, _, _, _, _, _, _, _, _, _, _, _, determinant, *_ = found
         return (determinant,)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:
         """The Jacobian by rows, per radian."""
         axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
         k = self._constants
-        assembly_sign = k.assembly_sign
-        base_1_x = k.base_1_x
-        base_1_y = k.base_1_y
-        base_1_z = k.base_1_z
-        base_2_x = k.base_2_x
-        base_2_y = k.base_2_y
-        base_2_z = k.base_2_z
-        base_3_x = k.base_3_x
-        base_3_y = k.base_3_y
-        base_3_z = k.base_3_z
-        base_4_x = k.base_4_x
-        base_4_y = k.base_4_y
-        base_4_z = k.base_4_z
-        base_5_x = k.base_5_x
-        base_5_y = k.base_5_y
-        base_5_z = k.base_5_z
-        base_6_x = k.base_6_x
-        base_6_y = k.base_6_y
-        base_6_z = k.base_6_z
-        home_arm_1_x = k.home_arm_1_x
-        home_arm_1_y = k.home_arm_1_y
-        home_arm_1_z = k.home_arm_1_z
-        home_arm_2_x = k.home_arm_2_x
-        home_arm_2_y = k.home_arm_2_y
-        home_arm_2_z = k.home_arm_2_z
-        home_arm_3_x = k.home_arm_3_x
-        home_arm_3_y = k.home_arm_3_y
-        home_arm_3_z = k.home_arm_3_z
-        home_arm_4_x = k.home_arm_4_x
-        home_arm_4_y = k.home_arm_4_y
-        home_arm_4_z = k.home_arm_4_z
-        home_arm_5_x = k.home_arm_5_x
-        home_arm_5_y = k.home_arm_5_y
-        home_arm_5_z = k.home_arm_5_z
-        home_arm_6_x = k.home_arm_6_x
-        home_arm_6_y = k.home_arm_6_y
-        home_arm_6_z = k.home_arm_6_z
+        home_r11 = k.home_r11
+        home_r12 = k.home_r12
+        home_r13 = k.home_r13
+        home_r21 = k.home_r21
+        home_r22 = k.home_r22
+        home_r23 = k.home_r23
+        home_r31 = k.home_r31
+        home_r32 = k.home_r32
+        home_r33 = k.home_r33
         home_x = k.home_x
         home_y = k.home_y
         home_z = k.home_z
-        machine_scale = k.machine_scale
-        offset_l1 = k.offset_l1
-        offset_l2 = k.offset_l2
-        offset_l3 = k.offset_l3
-        offset_l4 = k.offset_l4
-        offset_l5 = k.offset_l5
-        offset_l6 = k.offset_l6
         platform_radius = k.platform_radius
-        within = k.within
-        # numbers of reasonable size
-        if not (
-            abs(axis_l1) <= 1e9 and abs(axis_l2) <= 1e9 and abs(axis_l3) <= 1e9 and abs(axis_l4) <= 1e9
-            and abs(axis_l5) <= 1e9 and abs(axis_l6) <= 1e9
-        ):
-            return Status.BAD_INPUT
-        l1 = axis_l1 - offset_l1
-        l2 = axis_l2 - offset_l2
-        l3 = axis_l3 - offset_l3
-        l4 = axis_l4 - offset_l4
-        l5 = axis_l5 - offset_l5
-        l6 = axis_l6 - offset_l6
-        # the mirror that the machine does not have
-        if not (l1 > 0.0 and l2 > 0.0 and l3 > 0.0 and l4 > 0.0 and l5 > 0.0 and l6 > 0.0):
-            return Status.IMPOSSIBLE
-        # Newton's method: every pass improves the pose until the rods fit
-        x, y, z, roll, pitch, yaw, fitted = home_x, home_y, home_z, 0.0, 0.0, 0.0, 0.0
-        for _ in range(20):
-            cos_pitch = cos(pitch)
-            cos_yaw = cos(yaw)
-            turned_11 = cos_pitch*cos_yaw
-            cos_roll = cos(roll)
-            sin_roll = sin(roll)
-            sin_pitch = sin(pitch)
-            sin_yaw = sin(yaw)
-            turned_12 = cos_yaw*sin_pitch*sin_roll - cos_roll*sin_yaw
-            turned_13 = sin_roll*sin_yaw + cos_roll*cos_yaw*sin_pitch
-            arm_1_x = home_arm_1_x*turned_11 + home_arm_1_y*turned_12 + home_arm_1_z*turned_13
-            span_1_x = arm_1_x + x - base_1_x
-            turned_21 = cos_pitch*sin_yaw
-            turned_22 = cos_roll*cos_yaw + sin_pitch*sin_roll*sin_yaw
-            turned_23 = cos_roll*sin_pitch*sin_yaw - cos_yaw*sin_roll
-            arm_1_y = home_arm_1_x*turned_21 + home_arm_1_y*turned_22 + home_arm_1_z*turned_23
-            span_1_y = arm_1_y + y - base_1_y
-            turned_31 = -sin_pitch
-            turned_32 = cos_pitch*sin_roll
-            turned_33 = cos_pitch*cos_roll
-            arm_1_z = home_arm_1_x*turned_31 + home_arm_1_y*turned_32 + home_arm_1_z*turned_33
-            span_1_z = arm_1_z + z - base_1_z
-            length_1 = root(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
-            error_1 = length_1 - l1  # by what rod 1 would be too long
-            arm_2_x = home_arm_2_x*turned_11 + home_arm_2_y*turned_12 + home_arm_2_z*turned_13
-            span_2_x = arm_2_x + x - base_2_x
-            arm_2_y = home_arm_2_x*turned_21 + home_arm_2_y*turned_22 + home_arm_2_z*turned_23
-            span_2_y = arm_2_y + y - base_2_y
-            arm_2_z = home_arm_2_x*turned_31 + home_arm_2_y*turned_32 + home_arm_2_z*turned_33
-            span_2_z = arm_2_z + z - base_2_z
-            length_2 = root(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
-            error_2 = length_2 - l2  # by what rod 2 would be too long
-            arm_3_x = home_arm_3_x*turned_11 + home_arm_3_y*turned_12 + home_arm_3_z*turned_13
-            span_3_x = arm_3_x + x - base_3_x
-            arm_3_y = home_arm_3_x*turned_21 + home_arm_3_y*turned_22 + home_arm_3_z*turned_23
-            span_3_y = arm_3_y + y - base_3_y
-            arm_3_z = home_arm_3_x*turned_31 + home_arm_3_y*turned_32 + home_arm_3_z*turned_33
-            span_3_z = arm_3_z + z - base_3_z
-            length_3 = root(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
-            error_3 = length_3 - l3  # by what rod 3 would be too long
-            arm_4_x = home_arm_4_x*turned_11 + home_arm_4_y*turned_12 + home_arm_4_z*turned_13
-            span_4_x = arm_4_x + x - base_4_x
-            arm_4_y = home_arm_4_x*turned_21 + home_arm_4_y*turned_22 + home_arm_4_z*turned_23
-            span_4_y = arm_4_y + y - base_4_y
-            arm_4_z = home_arm_4_x*turned_31 + home_arm_4_y*turned_32 + home_arm_4_z*turned_33
-            span_4_z = arm_4_z + z - base_4_z
-            length_4 = root(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
-            error_4 = length_4 - l4  # by what rod 4 would be too long
-            arm_5_x = home_arm_5_x*turned_11 + home_arm_5_y*turned_12 + home_arm_5_z*turned_13
-            span_5_x = arm_5_x + x - base_5_x
-            arm_5_y = home_arm_5_x*turned_21 + home_arm_5_y*turned_22 + home_arm_5_z*turned_23
-            span_5_y = arm_5_y + y - base_5_y
-            arm_5_z = home_arm_5_x*turned_31 + home_arm_5_y*turned_32 + home_arm_5_z*turned_33
-            span_5_z = arm_5_z + z - base_5_z
-            length_5 = root(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
-            error_5 = length_5 - l5  # by what rod 5 would be too long
-            arm_6_x = home_arm_6_x*turned_11 + home_arm_6_y*turned_12 + home_arm_6_z*turned_13
-            span_6_x = arm_6_x + x - base_6_x
-            arm_6_y = home_arm_6_x*turned_21 + home_arm_6_y*turned_22 + home_arm_6_z*turned_23
-            span_6_y = arm_6_y + y - base_6_y
-            arm_6_z = home_arm_6_x*turned_31 + home_arm_6_y*turned_32 + home_arm_6_z*turned_33
-            span_6_z = arm_6_z + z - base_6_z
-            length_6 = root(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
-            error_6 = length_6 - l6  # by what rod 6 would be too long
-            # whether the rods fit
-            fit = (
-                1.0
-                if (
-                    abs(error_1) <= within
-                ) and (abs(error_2) <= within) and (abs(error_3) <= within) and (abs(error_4) <= within) and (abs(error_5) <= within) and (abs(error_6) <= within)
-                else 0.0
+        # the platform on its rods, searched from the home pose
+        found = self._find_platform(
+            (
+                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
+                home_r22, home_r23, home_r31, home_r32, home_r33, home_x, home_y, home_z,
             )
-            divisor_1 = length_1 if length_1 > 1e-9*machine_scale else 1.0
-            along_1_x = span_1_x/divisor_1
-            along_1_y = span_1_y/divisor_1
-            along_1_z = span_1_z/divisor_1
-            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-            divisor_2 = length_2 if length_2 > 1e-9*machine_scale else 1.0
-            along_2_x = span_2_x/divisor_2
-            along_2_y = span_2_y/divisor_2
-            along_2_z = span_2_z/divisor_2
-            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-            divisor_3 = length_3 if length_3 > 1e-9*machine_scale else 1.0
-            along_3_x = span_3_x/divisor_3
-            along_3_y = span_3_y/divisor_3
-            along_3_z = span_3_z/divisor_3
-            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-            divisor_4 = length_4 if length_4 > 1e-9*machine_scale else 1.0
-            along_4_x = span_4_x/divisor_4
-            along_4_y = span_4_y/divisor_4
-            along_4_z = span_4_z/divisor_4
-            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-            divisor_5 = length_5 if length_5 > 1e-9*machine_scale else 1.0
-            along_5_x = span_5_x/divisor_5
-            along_5_y = span_5_y/divisor_5
-            along_5_z = span_5_z/divisor_5
-            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-            divisor_6 = length_6 if length_6 > 1e-9*machine_scale else 1.0
-            along_6_x = span_6_x/divisor_6
-            along_6_y = span_6_y/divisor_6
-            along_6_z = span_6_z/divisor_6
-            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
-            # the twist that lets the errors vanish
-            determinant, x_rate, y_rate, z_rate, swing_x, swing_y, swing_z = solve(
-                (
-                    (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                    (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                    (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                    (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                    (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                    (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
-                ),
-                ((-error_1,), (-error_2,), (-error_3,), (-error_4,), (-error_5,), (-error_6,)),
-            )
-            spin_x = swing_x/platform_radius
-            spin_y = swing_y/platform_radius
-            cos_pitch_divisor = cos_pitch if abs(cos_pitch) > 1e-11 else 1.0
-            roll_rate = (spin_x*cos_yaw + spin_y*sin_yaw)/cos_pitch_divisor
-            pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw
-            spin_z = swing_z/platform_radius
-            yaw_rate = spin_z + roll_rate*sin_pitch
-            # of the step, in machines and radians
-            size = root(
-                pitch_rate*pitch_rate + roll_rate*roll_rate + yaw_rate*yaw_rate
-                + x_rate*x_rate/(machine_scale*machine_scale) + y_rate*y_rate/(machine_scale*machine_scale)
-                + z_rate*z_rate/(machine_scale*machine_scale)
-            )
-            stretch = 2.0*size if size > 0.5 else 1.0
-            if fit > 0.5 and fitted > 0.5:
-                break
-            x = x + x_rate/stretch
-            y = y + y_rate/stretch
-            z = z + z_rate/stretch
-            roll = roll + roll_rate/stretch
-            pitch = pitch + pitch_rate/stretch
-            yaw = yaw + yaw_rate/stretch
-            fitted = fit
-        else:
-            return Status.IMPOSSIBLE
-        # the other assembly mode
-        if not (assembly_sign*determinant > 0.0):
-            return Status.IMPOSSIBLE
+        )
+        if isinstance(found, Status):
+            return found
+        (
+            _, _, _, _, _, _, _, _, _, _, _, _, determinant, along_1_x, along_1_y, along_1_z, moment_1_x,
+            moment_1_y, moment_1_z, along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
+            along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z, along_4_x, along_4_y, along_4_z,
+            moment_4_x, moment_4_y, moment_4_z, along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y,
+            moment_5_z, along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z,
+        ) = found
         # nothing controls the plate
         if not (abs(determinant) > 1e-11):
             return Status.IMPOSSIBLE
