@@ -22,11 +22,12 @@ from derive.forward import (
 )
 from derive.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics import Freedom, Kinematics, Margin
+from derive.legs import MARGIN
 from derive.mechanism import DescriptionError, Mechanism, Turning
 from derive.newton import START_POSITION, START_ROTATION, at_given, at_home, found_from, search_program
 from derive.parameters import machine_parameters, setup_program
 from derive.passes import assemble, hoist
-from derive.platform import MARGIN, platform_checks, platform_singularity
+from derive.platform import platform_checks, platform_singularity
 from derive.pose import pose_of
 from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real, shared
 from derive.shared_names import refuse_shared_names

@@ -15,9 +15,7 @@ import sympy as sp
 
 from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
 from derive.forward import Forward, named_trigonometry
-from derive.mechanism import Mechanism
-from derive.passes import assemble
-from derive.platform import (
+from derive.legs import (
     ANGLES,
     ASSEMBLY_SIGN,
     COORDINATES,
@@ -36,6 +34,8 @@ from derive.platform import (
     span,
     turned,
 )
+from derive.mechanism import Mechanism
+from derive.passes import assemble
 from derive.program import (
     CONVERGED,
     FREE_ANGLE,

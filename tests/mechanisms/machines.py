@@ -15,8 +15,7 @@ from derive.mechanism import Joint, Mechanism, Parameter, Role
 from tests.mechanisms.closure import Array, Closure
 
 MECHANISMS = tuple(m for _, m in catalogue() if not m.rods)
-"""The serial mechanisms: closed loops go through tests/loops, the hexapod through test_hexapod as well."""
-"""The full pose has tests of its own: `test_hexapod.py`."""
+"""The serial mechanisms: closed loops go through tests/loops, the hexapod through tests/hexapod as well."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
 TURNS = 1000.0

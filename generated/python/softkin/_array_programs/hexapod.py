@@ -418,6 +418,26 @@ class ArrayPrograms(StartedPrograms):
         base_6_x = k.base_6_x
         base_6_y = k.base_6_y
         base_6_z = k.base_6_z
+        home_along_1_x = k.home_along_1_x
+        home_along_1_y = k.home_along_1_y
+        home_along_1_z = k.home_along_1_z
+        home_along_2_x = k.home_along_2_x
+        home_along_2_y = k.home_along_2_y
+        home_along_2_z = k.home_along_2_z
+        home_along_3_x = k.home_along_3_x
+        home_along_3_y = k.home_along_3_y
+        home_along_3_z = k.home_along_3_z
+        home_along_4_x = k.home_along_4_x
+        home_along_4_y = k.home_along_4_y
+        home_along_4_z = k.home_along_4_z
+        home_along_5_x = k.home_along_5_x
+        home_along_5_y = k.home_along_5_y
+        home_along_5_z = k.home_along_5_z
+        home_along_6_x = k.home_along_6_x
+        home_along_6_y = k.home_along_6_y
+        home_along_6_z = k.home_along_6_z
+        least_cos_base = k.least_cos_base
+        least_cos_plate = k.least_cos_plate
         machine_scale = k.machine_scale
         min_type2_margin = k.min_type2_margin
         offset_l1 = k.offset_l1
@@ -426,6 +446,24 @@ class ArrayPrograms(StartedPrograms):
         offset_l4 = k.offset_l4
         offset_l5 = k.offset_l5
         offset_l6 = k.offset_l6
+        plate_axis_1_x = k.plate_axis_1_x
+        plate_axis_1_y = k.plate_axis_1_y
+        plate_axis_1_z = k.plate_axis_1_z
+        plate_axis_2_x = k.plate_axis_2_x
+        plate_axis_2_y = k.plate_axis_2_y
+        plate_axis_2_z = k.plate_axis_2_z
+        plate_axis_3_x = k.plate_axis_3_x
+        plate_axis_3_y = k.plate_axis_3_y
+        plate_axis_3_z = k.plate_axis_3_z
+        plate_axis_4_x = k.plate_axis_4_x
+        plate_axis_4_y = k.plate_axis_4_y
+        plate_axis_4_z = k.plate_axis_4_z
+        plate_axis_5_x = k.plate_axis_5_x
+        plate_axis_5_y = k.plate_axis_5_y
+        plate_axis_5_z = k.plate_axis_5_z
+        plate_axis_6_x = k.plate_axis_6_x
+        plate_axis_6_y = k.plate_axis_6_y
+        plate_axis_6_z = k.plate_axis_6_z
         platform_1_x = k.platform_1_x
         platform_1_y = k.platform_1_y
         platform_1_z = k.platform_1_z
@@ -523,56 +561,106 @@ class ArrayPrograms(StartedPrograms):
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
+        cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
+        divisor_2 = select(l2 > 1e-9*machine_scale, l2, 1.0)
+        along_2_x = span_2_x/divisor_2
+        along_2_y = span_2_y/divisor_2
+        along_2_z = span_2_z/divisor_2
+        cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
+        divisor_3 = select(l3 > 1e-9*machine_scale, l3, 1.0)
+        along_3_x = span_3_x/divisor_3
+        along_3_y = span_3_y/divisor_3
+        along_3_z = span_3_z/divisor_3
+        cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
+        divisor_4 = select(l4 > 1e-9*machine_scale, l4, 1.0)
+        along_4_x = span_4_x/divisor_4
+        along_4_y = span_4_y/divisor_4
+        along_4_z = span_4_z/divisor_4
+        cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
+        divisor_5 = select(l5 > 1e-9*machine_scale, l5, 1.0)
+        along_5_x = span_5_x/divisor_5
+        along_5_y = span_5_y/divisor_5
+        along_5_z = span_5_z/divisor_5
+        cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
+        divisor_6 = select(l6 > 1e-9*machine_scale, l6, 1.0)
+        along_6_x = span_6_x/divisor_6
+        along_6_y = span_6_y/divisor_6
+        along_6_z = span_6_z/divisor_6
+        cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
+        # a joint on the base bends beyond its cone
+        require(
+            status,
+            (
+                (cos_base_lean_1 >= least_cos_base) & (cos_base_lean_2 >= least_cos_base)
+                & (cos_base_lean_3 >= least_cos_base) & (cos_base_lean_4 >= least_cos_base)
+                & (cos_base_lean_5 >= least_cos_base) & (cos_base_lean_6 >= least_cos_base)
+            ),
+            Status.UNREACHABLE,
+        )
+        cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
+        cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
+        cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
+        cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
+        cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
+        cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
+        cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
+        cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
+        cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
+        cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
+        cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
+        cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
+        cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
+        cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
+        cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
+        cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
+        cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
+        cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
+        cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
+        cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
+        cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
+        cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
+        cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
+        cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
+        # a joint on the plate bends beyond its cone
+        require(
+            status,
+            (
+                (cos_plate_lean_1 >= least_cos_plate) & (cos_plate_lean_2 >= least_cos_plate)
+                & (cos_plate_lean_3 >= least_cos_plate) & (cos_plate_lean_4 >= least_cos_plate)
+                & (cos_plate_lean_5 >= least_cos_plate) & (cos_plate_lean_6 >= least_cos_plate)
+            ),
+            Status.UNREACHABLE,
+        )
         arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
         arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
         moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
         arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
         moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
         moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-        divisor_2 = select(l2 > 1e-9*machine_scale, l2, 1.0)
-        along_2_x = span_2_x/divisor_2
-        along_2_y = span_2_y/divisor_2
-        along_2_z = span_2_z/divisor_2
         arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
         arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
         moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
         arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
         moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
         moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-        divisor_3 = select(l3 > 1e-9*machine_scale, l3, 1.0)
-        along_3_x = span_3_x/divisor_3
-        along_3_y = span_3_y/divisor_3
-        along_3_z = span_3_z/divisor_3
         arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
         arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
         moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
         arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
         moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
         moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-        divisor_4 = select(l4 > 1e-9*machine_scale, l4, 1.0)
-        along_4_x = span_4_x/divisor_4
-        along_4_y = span_4_y/divisor_4
-        along_4_z = span_4_z/divisor_4
         arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
         arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
         moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
         arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
         moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
         moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-        divisor_5 = select(l5 > 1e-9*machine_scale, l5, 1.0)
-        along_5_x = span_5_x/divisor_5
-        along_5_y = span_5_y/divisor_5
-        along_5_z = span_5_z/divisor_5
         arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
         arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
         moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
         arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
         moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
         moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-        divisor_6 = select(l6 > 1e-9*machine_scale, l6, 1.0)
-        along_6_x = span_6_x/divisor_6
-        along_6_y = span_6_y/divisor_6
-        along_6_z = span_6_z/divisor_6
         arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
         arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
         moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
