@@ -7,7 +7,8 @@ det A is a number without a unit.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import sympy as sp
 
@@ -69,7 +70,8 @@ def by_angles(words: Sequence[str] = ANGLES) -> sp.Matrix:
 
 def span(rod: Rod, position: Sequence[sp.Expr], arm: Sequence[sp.Expr], base: Sequence[sp.Expr]) -> tuple[Let, ...]:
     """From the joint on the base to the joint on the plate."""
-    return tuple(Let(n, p + a - b) for n, p, a, b in zip(names("span", rod), position, arm, base, strict=True))
+    lets = (Let(n, p + a - b) for n, p, a, b in zip(names("span", rod), position, arm, base, strict=True))
+    return noted(lets, f"leg {rod.name}: from its joint on the base to its joint on the platform")
 
 
 def length(rod: Rod) -> Let:
@@ -81,11 +83,18 @@ def row(rod: Rod, arm: Sequence[sp.Expr], measured: sp.Expr) -> tuple[Let, ...]:
     """A row of A: the direction of a span of known length, and its moment about the frame of the plate."""
     along, divisor = names("along", rod), of("divisor", rod)
     moment = sp.Matrix(list(arm)).cross(sp.Matrix(along)) / RADIUS
-    return (
+    lets = (
         Let(divisor, Select(sp.Gt(measured, SHORTEST_LINK * SCALE), measured, sp.Integer(1))),
         *(Let(a, s / divisor) for a, s in zip(along, names("span", rod), strict=True)),
         *(Let(n, v) for n, v in zip(names("moment", rod), moment, strict=True)),
     )
+    return noted(lets, f"leg {rod.name}: its direction, and the moment of that about the platform's origin")
+
+
+def noted(lets: Iterable[Let], note: str) -> tuple[Let, ...]:
+    """The statements, with a note at the first of them."""
+    first, *others = lets
+    return (replace(first, note=note), *others)
 
 
 def rows(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:

@@ -27,6 +27,7 @@ from derive.legs import (
     by_angles,
     length,
     names,
+    noted,
     of,
     point_of,
     row,
@@ -129,13 +130,14 @@ def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
         otherwise=Status.IMPOSSIBLE,
         note="Newton's method: every pass improves the pose until the rods fit",
     )
+    arms = (let for rod in mechanism.rods for let in turned(START_ROTATION, point_of(rod), names("start_arm", rod)))
     return (
-        *(let for rod in mechanism.rods for let in turned(START_ROTATION, point_of(rod), names("start_arm", rod))),
+        *noted(arms, "the joints of the platform, from its origin, as it is turned at the start"),
         *bases[0],
         Let(within, CONVERGED * SCALE, "lengths that agree to this are equal"),
         loop,
         Require(sp.Gt(ASSEMBLY_SIGN * DETERMINANT, 0), Status.IMPOSSIBLE, "the other assembly mode"),
-        *(Let(n, v) for n, v in zip(ROTATION_ENTRIES, rotation, strict=True)),
+        *noted((Let(n, v) for n, v in zip(ROTATION_ENTRIES, rotation, strict=True)), "the start, and the turn away from it"),
     )
 
 
@@ -147,13 +149,14 @@ def _bases(mechanism: Mechanism) -> tuple[tuple[Let, ...], list[sp.Expr]]:
 def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) -> tuple[Let, ...]:
     """The rods at the pose that the state is."""
     lets = [Let(real(f"{w}_{a}"), f(real(a))) for a in ANGLES for w, f in (("cos", sp.cos), ("sin", sp.sin))]
-    lets += [Let(n, v) for n, v in zip(_TURN, by_angles(), strict=True)]
+    turn = (Let(n, v) for n, v in zip(_TURN, by_angles(), strict=True))
+    lets += noted(turn, "the turn away from the start: Rz(yaw) Ry(pitch) Rx(roll)")
     for i, rod in enumerate(mechanism.rods):
         *base, wanted = bases[1][4 * i : 4 * i + 4]
         arm = names("arm", rod)
         lets += turned(_TURN, names("start_arm", rod), arm)
         lets += [*span(rod, POSITION, arm, base), length(rod), *row(rod, arm, of("length", rod))]
-        lets.append(Let(of("error", rod), of("length", rod) - wanted, f"by what rod {rod.name} would be too long"))
+        lets.append(Let(of("error", rod), of("length", rod) - wanted, f"by what leg {rod.name} would be too long"))
     return tuple(lets)
 
 

@@ -10,7 +10,7 @@ import sympy as sp
 
 from derive.emit.st_expression import StructuredText, is_size_test
 from derive.emit.st_layout import commented, conjunction, indented, wrapped
-from derive.emit.st_loops import LOCALS, declarations, loop_lines, solve_lines
+from derive.emit.st_loops import LOCALS, declarations, kept, loop_lines, solve_lines
 from derive.emit.st_names import respelled, spellings
 from derive.emit.st_refusal import Refusal
 from derive.emit.st_shared import OUTCOME, call_lines
@@ -41,6 +41,7 @@ def printed(
     `given` spells what it reads, `stored` those of its bindings that are instance variables; the others are
     temporaries, and have none of the names in `taken`.
     """
+    stored = {**stored, **kept(program.body)}
     names = (name.name for name in program.bound() if name.name not in stored)
     temporaries = spellings(names, (*taken, *LOCALS, OUTCOME))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})

@@ -110,6 +110,7 @@ class ArrayPrograms(StartedPrograms):
             (l1 > 0.0) & (l2 > 0.0) & (l3 > 0.0) & (l4 > 0.0) & (l5 > 0.0) & (l6 > 0.0),
             Status.IMPOSSIBLE,
         )
+        # the joints of the platform, from its origin, as it is turned at the start
         start_arm_1_x = platform_1_x*start_r11 + platform_1_y*start_r12 + platform_1_z*start_r13
         start_arm_1_y = platform_1_x*start_r21 + platform_1_y*start_r22 + platform_1_z*start_r23
         start_arm_1_z = platform_1_x*start_r31 + platform_1_y*start_r32 + platform_1_z*start_r33
@@ -133,7 +134,7 @@ class ArrayPrograms(StartedPrograms):
         for _ in range(20):
             cos_pitch = cos(pitch)
             cos_yaw = cos(yaw)
-            turned_11 = cos_pitch*cos_yaw
+            turned_11 = cos_pitch*cos_yaw  # the turn away from the start: Rz(yaw) Ry(pitch) Rx(roll)
             cos_roll = cos(roll)
             sin_roll = sin(roll)
             sin_pitch = sin(pitch)
@@ -141,7 +142,7 @@ class ArrayPrograms(StartedPrograms):
             turned_12 = cos_yaw*sin_pitch*sin_roll - cos_roll*sin_yaw
             turned_13 = sin_roll*sin_yaw + cos_roll*cos_yaw*sin_pitch
             arm_1_x = start_arm_1_x*turned_11 + start_arm_1_y*turned_12 + start_arm_1_z*turned_13
-            span_1_x = arm_1_x + x - base_1_x
+            span_1_x = arm_1_x + x - base_1_x  # leg 1: from its joint on the base to its joint on the platform
             turned_21 = cos_pitch*sin_yaw
             turned_22 = cos_roll*cos_yaw + sin_pitch*sin_roll*sin_yaw
             turned_23 = cos_roll*sin_pitch*sin_yaw - cos_yaw*sin_roll
@@ -153,47 +154,47 @@ class ArrayPrograms(StartedPrograms):
             arm_1_z = start_arm_1_x*turned_31 + start_arm_1_y*turned_32 + start_arm_1_z*turned_33
             span_1_z = arm_1_z + z - base_1_z
             length_1 = root(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
-            error_1 = length_1 - l1  # by what rod 1 would be too long
+            error_1 = length_1 - l1  # by what leg 1 would be too long
             arm_2_x = start_arm_2_x*turned_11 + start_arm_2_y*turned_12 + start_arm_2_z*turned_13
-            span_2_x = arm_2_x + x - base_2_x
+            span_2_x = arm_2_x + x - base_2_x  # leg 2: from its joint on the base to its joint on the platform
             arm_2_y = start_arm_2_x*turned_21 + start_arm_2_y*turned_22 + start_arm_2_z*turned_23
             span_2_y = arm_2_y + y - base_2_y
             arm_2_z = start_arm_2_x*turned_31 + start_arm_2_y*turned_32 + start_arm_2_z*turned_33
             span_2_z = arm_2_z + z - base_2_z
             length_2 = root(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
-            error_2 = length_2 - l2  # by what rod 2 would be too long
+            error_2 = length_2 - l2  # by what leg 2 would be too long
             arm_3_x = start_arm_3_x*turned_11 + start_arm_3_y*turned_12 + start_arm_3_z*turned_13
-            span_3_x = arm_3_x + x - base_3_x
+            span_3_x = arm_3_x + x - base_3_x  # leg 3: from its joint on the base to its joint on the platform
             arm_3_y = start_arm_3_x*turned_21 + start_arm_3_y*turned_22 + start_arm_3_z*turned_23
             span_3_y = arm_3_y + y - base_3_y
             arm_3_z = start_arm_3_x*turned_31 + start_arm_3_y*turned_32 + start_arm_3_z*turned_33
             span_3_z = arm_3_z + z - base_3_z
             length_3 = root(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
-            error_3 = length_3 - l3  # by what rod 3 would be too long
+            error_3 = length_3 - l3  # by what leg 3 would be too long
             arm_4_x = start_arm_4_x*turned_11 + start_arm_4_y*turned_12 + start_arm_4_z*turned_13
-            span_4_x = arm_4_x + x - base_4_x
+            span_4_x = arm_4_x + x - base_4_x  # leg 4: from its joint on the base to its joint on the platform
             arm_4_y = start_arm_4_x*turned_21 + start_arm_4_y*turned_22 + start_arm_4_z*turned_23
             span_4_y = arm_4_y + y - base_4_y
             arm_4_z = start_arm_4_x*turned_31 + start_arm_4_y*turned_32 + start_arm_4_z*turned_33
             span_4_z = arm_4_z + z - base_4_z
             length_4 = root(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
-            error_4 = length_4 - l4  # by what rod 4 would be too long
+            error_4 = length_4 - l4  # by what leg 4 would be too long
             arm_5_x = start_arm_5_x*turned_11 + start_arm_5_y*turned_12 + start_arm_5_z*turned_13
-            span_5_x = arm_5_x + x - base_5_x
+            span_5_x = arm_5_x + x - base_5_x  # leg 5: from its joint on the base to its joint on the platform
             arm_5_y = start_arm_5_x*turned_21 + start_arm_5_y*turned_22 + start_arm_5_z*turned_23
             span_5_y = arm_5_y + y - base_5_y
             arm_5_z = start_arm_5_x*turned_31 + start_arm_5_y*turned_32 + start_arm_5_z*turned_33
             span_5_z = arm_5_z + z - base_5_z
             length_5 = root(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
-            error_5 = length_5 - l5  # by what rod 5 would be too long
+            error_5 = length_5 - l5  # by what leg 5 would be too long
             arm_6_x = start_arm_6_x*turned_11 + start_arm_6_y*turned_12 + start_arm_6_z*turned_13
-            span_6_x = arm_6_x + x - base_6_x
+            span_6_x = arm_6_x + x - base_6_x  # leg 6: from its joint on the base to its joint on the platform
             arm_6_y = start_arm_6_x*turned_21 + start_arm_6_y*turned_22 + start_arm_6_z*turned_23
             span_6_y = arm_6_y + y - base_6_y
             arm_6_z = start_arm_6_x*turned_31 + start_arm_6_y*turned_32 + start_arm_6_z*turned_33
             span_6_z = arm_6_z + z - base_6_z
             length_6 = root(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
-            error_6 = length_6 - l6  # by what rod 6 would be too long
+            error_6 = length_6 - l6  # by what leg 6 would be too long
             # whether the rods fit
             fit = select(
                 (
@@ -203,6 +204,7 @@ class ArrayPrograms(StartedPrograms):
                 1.0,
                 0.0,
             )
+            # leg 1: its direction, and the moment of that about the platform's origin
             divisor_1 = select(length_1 > 1e-9*machine_scale, length_1, 1.0)
             along_1_x = span_1_x/divisor_1
             along_1_y = span_1_y/divisor_1
@@ -210,6 +212,7 @@ class ArrayPrograms(StartedPrograms):
             moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
             moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
             moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
+            # leg 2: its direction, and the moment of that about the platform's origin
             divisor_2 = select(length_2 > 1e-9*machine_scale, length_2, 1.0)
             along_2_x = span_2_x/divisor_2
             along_2_y = span_2_y/divisor_2
@@ -217,6 +220,7 @@ class ArrayPrograms(StartedPrograms):
             moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
             moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
             moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
+            # leg 3: its direction, and the moment of that about the platform's origin
             divisor_3 = select(length_3 > 1e-9*machine_scale, length_3, 1.0)
             along_3_x = span_3_x/divisor_3
             along_3_y = span_3_y/divisor_3
@@ -224,6 +228,7 @@ class ArrayPrograms(StartedPrograms):
             moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
             moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
             moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
+            # leg 4: its direction, and the moment of that about the platform's origin
             divisor_4 = select(length_4 > 1e-9*machine_scale, length_4, 1.0)
             along_4_x = span_4_x/divisor_4
             along_4_y = span_4_y/divisor_4
@@ -231,6 +236,7 @@ class ArrayPrograms(StartedPrograms):
             moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
             moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
             moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
+            # leg 5: its direction, and the moment of that about the platform's origin
             divisor_5 = select(length_5 > 1e-9*machine_scale, length_5, 1.0)
             along_5_x = span_5_x/divisor_5
             along_5_y = span_5_y/divisor_5
@@ -238,6 +244,7 @@ class ArrayPrograms(StartedPrograms):
             moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
             moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
             moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
+            # leg 6: its direction, and the moment of that about the platform's origin
             divisor_6 = select(length_6 > 1e-9*machine_scale, length_6, 1.0)
             along_6_x = span_6_x/divisor_6
             along_6_y = span_6_y/divisor_6
@@ -290,7 +297,7 @@ class ArrayPrograms(StartedPrograms):
         require(status, done, Status.IMPOSSIBLE)
         # the other assembly mode
         require(status, assembly_sign*determinant > 0.0, Status.IMPOSSIBLE)
-        r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13
+        r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13  # the start, and the turn away from it
         r12 = start_r12*turned_11 + start_r22*turned_12 + start_r32*turned_13
         r13 = start_r13*turned_11 + start_r23*turned_12 + start_r33*turned_13
         r21 = start_r11*turned_21 + start_r21*turned_22 + start_r31*turned_23
@@ -557,31 +564,37 @@ class ArrayPrograms(StartedPrograms):
             ),
             Status.UNREACHABLE,
         )
+        # leg 1: its direction, and the moment of that about the platform's origin
         divisor_1 = select(l1 > 1e-9*machine_scale, l1, 1.0)
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
+        # leg 2: its direction, and the moment of that about the platform's origin
         divisor_2 = select(l2 > 1e-9*machine_scale, l2, 1.0)
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
         along_2_z = span_2_z/divisor_2
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
+        # leg 3: its direction, and the moment of that about the platform's origin
         divisor_3 = select(l3 > 1e-9*machine_scale, l3, 1.0)
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
         along_3_z = span_3_z/divisor_3
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
+        # leg 4: its direction, and the moment of that about the platform's origin
         divisor_4 = select(l4 > 1e-9*machine_scale, l4, 1.0)
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
         along_4_z = span_4_z/divisor_4
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
+        # leg 5: its direction, and the moment of that about the platform's origin
         divisor_5 = select(l5 > 1e-9*machine_scale, l5, 1.0)
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
         along_5_z = span_5_z/divisor_5
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
+        # leg 6: its direction, and the moment of that about the platform's origin
         divisor_6 = select(l6 > 1e-9*machine_scale, l6, 1.0)
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
