@@ -6,7 +6,7 @@ import time
 import traceback
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from derive.build import build
@@ -15,7 +15,6 @@ from derive.emit import python, st
 from derive.emit.language import Language
 from derive.kinematics import Evidence, Kinematics
 from derive.mechanism import DescriptionError, Mechanism
-from derive.program import Program
 from derive.solve import Unsolved
 from derive.verify import BrokenProgram
 from derive.witness import Disagreement, witness
@@ -41,8 +40,8 @@ class Built:
     @property
     def statements(self) -> int:
         """The statements of all programs."""
-        values = (getattr(self.kinematics, f.name) for f in fields(self.kinematics))
-        return sum(len(v.body) for v in values if isinstance(v, Program))
+        kinematics = self.kinematics
+        return sum(len(p.body) for p in (kinematics.setup, *kinematics.shared, *kinematics.programs))
 
 
 def derive_all(entries: Sequence[Entry]) -> Iterator[Built]:

@@ -19,7 +19,7 @@ from tests.st.library import Library, compile_st
 FILES = {str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))}
 UNITS = [name for name in FILES if not name.startswith("softkin/")]
 CONTRACT = load()
-PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits"}
+PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits", "FindPlatform"}
 
 # Every piece of text that is no comment, string or pragma.
 _SILENT = re.compile(r"\(\*.*?\*\)|//[^\n]*|\{[^}]*\}|'[^'\n]*'", re.DOTALL)

@@ -16,7 +16,7 @@ from derive.emit.st_expression import literal
 from derive.emit.st_layout import assigned
 from derive.emit.st_methods import methods_of
 from derive.kinematics import Kinematics
-from derive.program import EDGE, FREE_ANGLE, LARGEST, PIVOT, TIE
+from derive.program import EDGE, FREE_ANGLE, LARGEST, PIVOT, SOLVABLE, TIE
 
 name = "st"
 
@@ -41,6 +41,8 @@ def _templates() -> Environment:
         edge=literal(float(EDGE)),
         largest=literal(float(LARGEST)),
         pivot=literal(float(PIVOT)),
+        solvable=literal(float(SOLVABLE)),
+        smallest=literal(1.0 / float(SOLVABLE)),
         tie=literal(float(TIE)),
     )
     return templates

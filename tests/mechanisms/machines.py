@@ -16,7 +16,7 @@ from derive.mechanism import Joint, Mechanism, Parameter, Role
 from tests.mechanisms.closure import Array, Closure
 
 MECHANISMS = tuple(m for _, m in catalogue() if not m.rods)
-"""The serial mechanisms: machines of closed loops are in `loops.py`."""
+"""The serial mechanisms: machines of closed loops are in `loops.py`, those of a platform in tests/hexapod."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
 TURNS = 1000.0
