@@ -18,6 +18,7 @@ from derive.emit.st_expression import literal
 from derive.emit.st_layout import assigned
 from derive.emit.st_methods import methods_of
 from derive.emit.st_objects import Object, objects_of, ruled
+from derive.emit.st_overview import overview
 from derive.emit.st_reserved import refuse_clashes
 from derive.emit.st_uses import needed
 from derive.kinematics import Kinematics
@@ -45,12 +46,14 @@ class StructuredTextFiles:
 
     def render(self, kinematics: Sequence[Kinematics]) -> dict[str, str]:
         """All files of the language: path below its folder → text. Raises `DescriptionError` for a name that clashes."""
-        contract = load(self.profile)
-        objects = dict(_objects(kinematics, contract, _templates()))
+        contract, templates = load(self.profile), _templates()
+        objects = dict(_objects(kinematics, contract, templates))
         refuse_clashes({f"{path}.st": inside for path, inside in objects.items()})
         files = {f"{path}.st": f"{_PREAMBLE}\n{ruled(inside)}" for path, inside in objects.items()}
         files |= {f"{path}.xml": text for path, text in _documents(objects)}
-        files["import_softkin.py"] = _templates().get_template("import_softkin.py.j2").render(contract.spelling)
+        rows = list(overview(kinematics))
+        for name in ("import_softkin.py", "README.md"):
+            files[name] = templates.get_template(f"{name}.j2").render(contract.spelling, overview=rows)
         return dict(sorted(files.items()))
 
 
