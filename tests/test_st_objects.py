@@ -77,6 +77,11 @@ def test_an_object_without_an_end_is_refused() -> None:
         objects_of(TEXT.replace("METHOD PUBLIC Nothing\nEND_METHOD", "METHOD PUBLIC Nothing"))
 
 
+def test_text_in_no_object_is_refused() -> None:
+    with pytest.raises(ValueError, match="'VAR_GLOBAL' stands in no object"):
+        objects_of(f"{TEXT}\nVAR_GLOBAL\n  x : INT;\nEND_VAR\n")
+
+
 def test_rulers_are_all_that_is_added() -> None:
     text = ruled(objects_of(TEXT))
     lines = [line for line in text.split("\n") if line and not line.startswith("// ====")]
@@ -115,7 +120,25 @@ def test_declarations() -> None:
     assert [v.type for v in constant.variables] == ["ARRAY[0..1, 0..1] OF LREAL"]
     assert list(declared.names()) == ["dLength", "LIMITS"]
     assert [declaration_of(m.declaration).returns for m in block.members] == ["UDINT", "STRING(255)", ""]
-    assert declaration_of(order.declaration).enumerators == ("First", "Second")
+    assert declaration_of(order.declaration).enumerators == (("First", 0), ("Second", 1))
+
+
+def test_declarations_that_no_block_has_yet() -> None:
+    """A base block, a structure, numbered enumerators, and an initial value of several lines."""
+    derived = declaration_of("FUNCTION_BLOCK Robot EXTENDS SPACE.Base IMPLEMENTS\n  SPACE.One\nVAR\n  x : INT;\nEND_VAR")
+    assert (derived.extends, derived.interfaces) == ("SPACE.Base", ("SPACE.One",))
+    assert declaration_of("FUNCTION_BLOCK Robot EXTENDS Base\nVAR\nEND_VAR").extends == "Base"
+    pair = declaration_of("{attribute 'a'}\nTYPE Pair :\nSTRUCT\n  x : LREAL;  // One\n  y : LREAL := 1.0;\nEND_STRUCT\nEND_TYPE")
+    assert (list(pair.names()), pair.attributes, pair.enumerators) == (["x", "y"], (("a", ""),), ())
+    order = declaration_of("TYPE Order :\n(\n  First := 3,\n  Second\n);\nEND_TYPE")
+    assert order.enumerators == (("First", 3), ("Second", 4))
+    (table,) = declaration_of("PROGRAM P\nVAR\n  t : ARRAY[0..2] OF LREAL := [\n    1.0,\n    2.0, 3.0];\nEND_VAR").sections
+    assert table.variables[0].initial == "[ 1.0, 2.0, 3.0]"
+
+
+def test_a_head_it_cannot_read_is_refused() -> None:
+    with pytest.raises(ValueError, match="not a head of an object"):
+        declaration_of("FUNCTION_BLOCK Robot ABSTRACT\nVAR\nEND_VAR")
 
 
 @pytest.mark.parametrize("line", ["  a, b : LREAL;", "  a : LREAL", "a : LREAL;", "  a : LREAL; b : LREAL;"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
 from functools import lru_cache
 from pathlib import Path
 
@@ -106,3 +108,11 @@ def test_a_profile_is_generated_and_checked(tmp_path: Path, capsys: pytest.Captu
     assert main(["check", *given, "--profile", "before_4_11"]) == 0
     assert main(["check", *given]) == 1
     assert "differs from a fresh generation" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("given", "wanted"), [("PROFILE=before_4_11", " --profile before_4_11"), ("PROFILE=", "")])
+@pytest.mark.parametrize("target", ["generate", "check"])
+def test_make_hands_the_profile_on(target: str, given: str, wanted: str) -> None:
+    command = ["make", "--dry-run", target, given]
+    done = subprocess.run(command, cwd=MECHANISMS.parents[1], capture_output=True, text=True, check=True)
+    assert re.search(rf"-m derive {target}{wanted} *\n", done.stdout)

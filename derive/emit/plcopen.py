@@ -10,7 +10,7 @@ import uuid
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping, Sequence
 
-from derive.emit.plcopen_interface import add_attributes, add_data, add_interface, add_text, add_values
+from derive.emit.plcopen_interface import add_attributes, add_base_type, add_data, add_interface, add_text
 from derive.emit.st_declaration import declaration_of
 from derive.emit.st_objects import Object
 
@@ -69,7 +69,7 @@ def _headers(root: ET.Element, title: str, remark: str) -> None:
 def _data_type(parent: ET.Element, one: Object) -> None:
     element = ET.SubElement(parent, "dataType", name=one.name)
     declared = declaration_of(one.declaration)
-    add_values(ET.SubElement(element, "baseType"), declared.enumerators)
+    add_base_type(ET.SubElement(element, "baseType"), declared)
     add_attributes(element, declared.attributes)
     _text_and_identifier(element, one)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
 
 from derive.emit.st_declaration import Attributes, Declaration, Variable
 
@@ -37,10 +36,15 @@ def add_attributes(parent: ET.Element, attributes: Attributes) -> None:
             ET.SubElement(holder, "Attribute", Name=name, Value=value)
 
 
-def add_values(parent: ET.Element, enumerators: Sequence[str]) -> None:
-    """An enumeration, numbered from 0."""
+def add_base_type(parent: ET.Element, declared: Declaration) -> None:
+    """What a data type is: a structure or an enumeration."""
+    if declared.sections:
+        structure = ET.SubElement(parent, "struct")
+        for variable in declared.sections[0].variables:
+            _add_variable(structure, variable)
+        return
     values = ET.SubElement(ET.SubElement(parent, "enum"), "values")
-    for number, name in enumerate(enumerators):
+    for name, number in declared.enumerators:
         ET.SubElement(values, "value", name=name, value=str(number))
 
 
@@ -55,8 +59,10 @@ def add_interface(parent: ET.Element, declared: Declaration) -> ET.Element:
             element.set("constant", "true")
         for variable in section.variables:
             _add_variable(element, variable)
-    if declared.interfaces:
+    if declared.extends or declared.interfaces:
         inheritance = ET.SubElement(add_data(interface, "pouinheritance"), "Inheritance")
+        if declared.extends:
+            ET.SubElement(inheritance, "Extends").text = declared.extends
         for name in declared.interfaces:
             ET.SubElement(inheritance, "Implements").text = name
     add_attributes(interface, declared.attributes)
@@ -67,10 +73,20 @@ def _add_variable(parent: ET.Element, variable: Variable) -> None:
     element = ET.SubElement(parent, "variable", name=variable.name)
     _add_type(ET.SubElement(element, "type"), variable.type)
     if variable.initial:
-        ET.SubElement(ET.SubElement(element, "initialValue"), "simpleValue", value=variable.initial)
+        _add_value(ET.SubElement(element, "initialValue"), variable.initial)
     add_attributes(element, variable.attributes)
     if variable.comment:
         add_text(ET.SubElement(element, "documentation"), variable.comment)
+
+
+def _add_value(parent: ET.Element, value: str) -> None:
+    """An initial value; that of an array is a list in square brackets, without a list inside."""
+    if not value.startswith("["):
+        ET.SubElement(parent, "simpleValue", value=value)
+        return
+    values = ET.SubElement(parent, "arrayValue")
+    for one in value.strip("[] ").split(","):
+        ET.SubElement(ET.SubElement(values, "value"), "simpleValue", value=one.strip())
 
 
 def _add_type(parent: ET.Element, type_text: str) -> None:

@@ -10,10 +10,14 @@ Attributes = tuple[tuple[str, str], ...]
 """Names and values of pragmas; a pragma without a value has an empty one."""
 
 _PRAGMA = re.compile(r" *\{attribute '([^']*)'(?: := '([^']*)')?\}")
-_SECTION = re.compile(r"(VAR\w*)( CONSTANT)?")
+_SECTION = re.compile(r"(VAR\w*|STRUCT)( CONSTANT)?")
+_ENDS = ("END_VAR", "END_STRUCT")
 _VARIABLE = re.compile(r"  (\w+) : ([^:;]+?)(?: := ([^;]+))?;(?:  // (.*))?")
-_HEAD = re.compile(r"(?:FUNCTION_BLOCK|FUNCTION|METHOD(?: PUBLIC| PRIVATE)?|PROPERTY(?: PUBLIC)?) \w+(?: : (.+))?")
-_ENUMERATOR = re.compile(r"  (\w+),?")
+_HEAD = re.compile(
+    r"(?:FUNCTION_BLOCK|FUNCTION|PROGRAM|METHOD(?: PUBLIC| PRIVATE)?|PROPERTY(?: PUBLIC)?) \w+"
+    r"(?: EXTENDS ([\w.]+))?(?: : (.+)| IMPLEMENTS)?"
+)
+_ENUMERATOR = re.compile(r"  (\w+)(?: := (\d+))?,?")
 
 
 @dataclass(frozen=True)
@@ -38,17 +42,18 @@ class Section:
 
 @dataclass(frozen=True)
 class Declaration:
-    """A declaration. `enumerators` are those of a type."""
+    """A declaration. A structure has one section, `enumerators` are those of an enumeration, with their numbers."""
 
     returns: str
+    extends: str
     interfaces: tuple[str, ...]
     attributes: Attributes
     sections: tuple[Section, ...]
-    enumerators: tuple[str, ...]
+    enumerators: tuple[tuple[str, int], ...]
 
     def names(self) -> Iterator[str]:
         """Every name that is declared inside."""
-        yield from self.enumerators
+        yield from (name for name, _ in self.enumerators)
         for section in self.sections:
             yield from (v.name for v in section.variables)
 
@@ -56,14 +61,18 @@ class Declaration:
 def declaration_of(text: str) -> Declaration:
     """Read a declaration as this project writes it; raises `ValueError` for a line of a section it cannot read."""
     lines = _without_comments(text)
-    head = next((at for at, line in enumerate(lines) if _HEAD.match(line)), 0)
-    found = _HEAD.fullmatch(lines[head].removesuffix(" IMPLEMENTS")) if lines else None
+    head = next((at for at, line in enumerate(lines) if _HEAD.match(line)), None)
+    found = _HEAD.fullmatch(lines[head]) if head is not None else None
+    if head is not None and found is None:
+        raise ValueError(f"not a head of an object: {lines[head]!r}")
+    sections = tuple(_sections(lines))
     return Declaration(
-        returns=(found.group(1) or "") if found else "",
-        interfaces=_interfaces(lines[head:]),
-        attributes=tuple(_attributes(lines[:head] if found else lines)),
-        sections=tuple(_sections(lines)),
-        enumerators=tuple(m.group(1) for line in lines if not found and (m := _ENUMERATOR.fullmatch(line))),
+        returns=(found.group(2) or "") if found else "",
+        extends=(found.group(1) or "") if found else "",
+        interfaces=_interfaces(lines[head or 0 :]),
+        attributes=tuple(_attributes([line for line in lines if line.startswith("{")])),
+        sections=sections,
+        enumerators=() if sections or found else tuple(_enumerators(lines)),
     )
 
 
@@ -89,7 +98,7 @@ def _interfaces(lines: Sequence[str]) -> tuple[str, ...]:
 def _sections(lines: Sequence[str]) -> Iterator[Section]:
     starts = [at for at, line in enumerate(lines) if _SECTION.fullmatch(line)]
     for start in starts:
-        end = lines.index("END_VAR", start)
+        end = next(at for at in range(start, len(lines)) if lines[at] in _ENDS)
         section = _SECTION.fullmatch(lines[start])
         assert section is not None
         yield Section(section.group(1), section.group(2) is not None, tuple(_variables(lines[start + 1 : end])))
@@ -97,13 +106,28 @@ def _sections(lines: Sequence[str]) -> Iterator[Section]:
 
 def _variables(lines: Sequence[str]) -> Iterator[Variable]:
     pragmas: list[str] = []
+    begun = ""
     for line in lines:
         if _PRAGMA.fullmatch(line):
             pragmas.append(line)
             continue
-        found = _VARIABLE.fullmatch(line)
+        begun = f"{begun} {line.strip()}" if begun else line
+        if ";" not in begun:
+            continue  # an initial value of several lines
+        found = _VARIABLE.fullmatch(begun)
         if found is None:
-            raise ValueError(f"not a declaration of one variable: {line!r}")
+            raise ValueError(f"not a declaration of one variable: {begun!r}")
         name, kind, initial, comment = found.groups()
         yield Variable(name, kind, initial or "", comment or "", tuple(_attributes(pragmas)))
-        pragmas = []
+        pragmas, begun = [], ""
+    if begun:
+        raise ValueError(f"not a declaration of one variable: {begun!r}")
+
+
+def _enumerators(lines: Sequence[str]) -> Iterator[tuple[str, int]]:
+    number = 0
+    for line in lines:
+        if found := _ENUMERATOR.fullmatch(line):
+            number = int(found.group(2) or number)
+            yield found.group(1), number
+            number += 1

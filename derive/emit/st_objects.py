@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 _OPENING = re.compile(r"(FUNCTION_BLOCK|FUNCTION|PROGRAM|TYPE|METHOD|PROPERTY|GET)\b(?: PUBLIC| PRIVATE)? *(\w*)")
-_HOLDERS = ("FUNCTION_BLOCK", "PROPERTY")
+_HOLDERS = ("FUNCTION_BLOCK", "PROGRAM", "PROPERTY")
 _RULER_WIDTH = 110
 
 
@@ -33,7 +33,7 @@ class Object:
 
 
 def objects_of(text: str) -> tuple[Object, ...]:
-    """The objects of a text in their order; raises `ValueError` for one without an end."""
+    """The objects of a text in their order; raises `ValueError` for one without an end, and for text that is in none."""
     return tuple(_Reader(text).objects())
 
 
@@ -54,6 +54,8 @@ class _Reader:
             if not is_comment and _OPENING.match(line):
                 yield self._object(own)
                 own = []
+            elif not is_comment and line and not line.startswith(("//", "(*", "{")):
+                raise ValueError(f"{line!r} stands in no object")
             is_comment = "*)" not in line and (is_comment or line.startswith("(*"))
 
     def _object(self, own: list[str]) -> Object:

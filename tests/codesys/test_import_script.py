@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
 import runpy
 import shutil
 import sys
@@ -13,43 +15,46 @@ import pytest
 from derive.__main__ import OUTPUT
 from tests.codesys.parts import FILES, all_parts
 from tests.codesys.python27 import beyond_python27
-from tests.codesys.scriptengine_stand_in import Code, Dut, Engine, Folder, LibraryManager, Node, Property
+from tests.codesys.scriptengine_stand_in import Code, Dut, Engine, Folder, LibraryManager, Node, Project, Property
 
 SOURCE = OUTPUT / "st"
 SCRIPT = SOURCE / "import_softkin.py"
 TITLES = ("SM3_Transformation", "SM3_Math", "SM3_Error")
-Run = Callable[..., int]
 
 
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch) -> Run:
-    """Run the script, as CODESYS does: not imported, with the module in place; the exit code."""
-
-    def running(engine: Engine, *arguments: str, script: Path = SCRIPT) -> int:
-        monkeypatch.setitem(sys.modules, "scriptengine", engine)
-        monkeypatch.setattr(sys, "argv", [str(script), *arguments])
+def execute(engine: Engine, *arguments: str, script: Path = SCRIPT) -> int:
+    """Run the script as CODESYS does, not imported, with the module in place; the exit code."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "scriptengine", engine)
+        patch.setattr(sys, "argv", [str(script), *arguments])
         try:
             runpy.run_path(str(script))
         except SystemExit as end:
             return int(end.code or 0)
         return 0
 
-    return running
 
-
-def test_a_library_with_every_object(run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    engine, target = Engine(TITLES), tmp_path / "Softkin.library"
-    assert run(engine, str(target)) == 0
+@pytest.fixture(scope="module")
+def imported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Project, str]:
+    """The project that the script makes of everything, and what it prints."""
+    engine, target = Engine(TITLES), tmp_path_factory.mktemp("codesys") / "Softkin.library"
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        assert execute(engine, str(target)) == 0
     (project,) = engine.made
-    assert project.is_saved and target.exists()
+    return project, printed.getvalue()
+
+
+def test_a_library_with_every_object(imported: tuple[Project, str]) -> None:
+    project, printed = imported
+    assert project.is_saved and Path(project.path).exists()
     assert vars(project.information) == {"title": "Softkin", "company": "Softkin", "version": "0.1.0.0"}
     assert _panes(project.get_children(True)) == {
         (part.kind, path): (part.declaration, part.implementation) for (_, path), part in all_parts(FILES).items()
     }
-    printed = capsys.readouterr().out
     assert printed.count("\n") == 2, "one message of the compiler, and the summary"
     assert "Build: Severity.Information: C32 Compile complete (Softkin)" in printed
-    assert f"{len(all_parts(FILES))} objects in {target}; errors of the compiler: 0" in printed
+    assert f"{len(all_parts(FILES))} objects in {project.path}; errors of the compiler: 0" in printed
 
 
 def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:
@@ -68,17 +73,13 @@ def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:
     return found
 
 
-def test_references_are_placeholders_for_the_newest_library(run: Run, tmp_path: Path) -> None:
-    engine = Engine(TITLES)
-    assert run(engine, str(tmp_path / "a.library")) == 0
-    (manager,) = (one for one in engine.made[0].get_children() if isinstance(one, LibraryManager))
+def test_references_are_placeholders_for_the_newest_library(imported: tuple[Project, str]) -> None:
+    (manager,) = (one for one in imported[0].get_children() if isinstance(one, LibraryManager))
     assert {t: (one.title, one.version) for t, one in manager.placeholders.items()} == {t: (t, (4, 20, 0, 0)) for t in TITLES}
 
 
-def test_folders_by_family(run: Run, tmp_path: Path) -> None:
-    engine = Engine(TITLES)
-    assert run(engine, str(tmp_path / "a.library")) == 0
-    (top,) = (one for one in engine.made[0].get_children() if isinstance(one, Folder))
+def test_folders_by_family(imported: tuple[Project, str]) -> None:
+    (top,) = (one for one in imported[0].get_children() if isinstance(one, Folder))
     assert top.get_name() == "Softkin"
     inside = {folder.get_name(): {one.get_name() for one in folder.get_children()} for folder in top.get_children()}
     assert set(inside) == {name.split("/")[0] for name in FILES}
@@ -97,19 +98,19 @@ def _copy(tmp_path: Path, old: str = "", new: str = "") -> Path:
     return tmp_path / SCRIPT.name
 
 
-def test_what_does_not_compile_is_told(run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_does_not_compile_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     script = _copy(tmp_path, "IsInitialized := initialized;", "IsInitialized := initialised;")
     engine = Engine(TITLES)
-    assert run(engine, str(tmp_path / "a.library"), script=script) == 1
+    assert execute(engine, str(tmp_path / "a.library"), script=script) == 1
     printed = capsys.readouterr().out
     assert "Severity.Error" in printed and "initialised" in printed
     assert "errors of the compiler: 1" in printed
     assert engine.made[0].is_saved, "to be looked at"
 
 
-def test_a_dialog_asks_for_the_path(run: Run, tmp_path: Path) -> None:
+def test_a_dialog_asks_for_the_path(tmp_path: Path) -> None:
     target = tmp_path / "asked.library"
-    assert run(Engine(TITLES, str(target)), script=_copy(tmp_path)) == 0
+    assert execute(Engine(TITLES, str(target)), script=_copy(tmp_path)) == 0
     assert target.exists()
 
 
@@ -130,19 +131,19 @@ REFUSALS: dict[str, tuple[Callable[[], Engine], tuple[str, ...], str]] = {
 
 
 @pytest.mark.parametrize("case", REFUSALS)
-def test_refusals_are_one_line(case: str, run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_refusals_are_one_line(case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     engine, arguments, message = REFUSALS[case]
     (tmp_path / "there.library").touch()
-    assert run(engine(), *(a.format(tmp_path) for a in arguments)) == 1
+    assert execute(engine(), *(a.format(tmp_path) for a in arguments)) == 1
     printed = capsys.readouterr().out
     assert printed.startswith("error: ") and message in printed and printed.count("\n") == 1
     assert not (tmp_path / "a.library").exists()
 
 
-def test_away_from_its_files_it_says_so(run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_away_from_its_files_it_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     script = tmp_path / SCRIPT.name
     shutil.copy(SCRIPT, script)
-    assert run(Engine(TITLES), str(tmp_path / "a.library"), script=script) == 1
+    assert execute(Engine(TITLES), str(tmp_path / "a.library"), script=script) == 1
     assert "leave it in the folder in which it came" in capsys.readouterr().out
 
 

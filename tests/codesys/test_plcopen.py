@@ -14,7 +14,7 @@ from xsdata.formats.dataclass.parsers.config import ParserConfig
 
 from derive.__main__ import OUTPUT
 from derive.emit.plcopen import document
-from derive.emit.st_objects import Object
+from derive.emit.st_objects import Object, objects_of
 from tests.codesys.parts import FILES, Part, all_parts, parts_of
 from tests.codesys.plcopen_reader import Element, folders, identifiers, listed, parse, wholes
 from tests.codesys.typed_copy import declared_variables, typed_variables
@@ -71,7 +71,7 @@ def test_what_is_read_back_compiles() -> None:
     """The stand-in compiler takes the text from the XML as it takes the files, all methods and interfaces included."""
     read = wholes(parse(EVERYTHING))
     library = compile_st({name: whole.text() for name, whole in read.items()})
-    assert set(library.objects) == set(read) == set(compile_st(FILES).objects)
+    assert set(library.objects) == set(read) == {p.path for p in all_parts(FILES).values() if "." not in p.path}
 
 
 def test_folders_are_those_of_the_files() -> None:
@@ -160,6 +160,22 @@ def test_an_independent_class_model_reads_it() -> None:
     (inputs,) = pous["Softkin_Root"].interface.input_vars
     assert [v.name for v in inputs.variable] == ["dValue"]
     assert pous["Softkin_Root"].interface.return_type.lreal is not None
+
+
+def test_kinds_that_no_mechanism_has_yet(tmp_path: Path) -> None:
+    """A structure, a program and a derived block are valid too."""
+    text = "TYPE Pair :\nSTRUCT\n  x : LREAL;\n  y : LREAL := 1.0;  // Two\nEND_STRUCT\nEND_TYPE\n"
+    text += "PROGRAM Test\nVAR\n  t : ARRAY[0..1] OF LREAL := [1.0, 2.0];\nEND_VAR\n\nt[0] := t[1];\nEND_PROGRAM\n"
+    text += "FUNCTION_BLOCK Robot EXTENDS TRAFO.Kin_Coupled\nVAR\n  p : Pair;\nEND_VAR\n\n"
+    text += "METHOD PUBLIC Run\nEND_METHOD\nEND_FUNCTION_BLOCK\n"
+    path = tmp_path / "kinds.xml"
+    path.write_text(document("Kinds", "", {"folder": objects_of(text)}), encoding="utf-8")
+    assert errors(path.read_text(encoding="utf-8")) == []
+    assert list(wholes(parse(path))) == ["Pair", "Test", "Robot"]
+    root = parse(path)
+    assert [v.attrib["name"] for v in root.iterfind(".//{*}struct/{*}variable")] == ["x", "y"]
+    assert [v.attrib["value"] for v in root.iterfind(".//{*}arrayValue/{*}value/{*}simpleValue")] == ["1.0", "2.0"]
+    assert [e.text for e in root.iter("{*}Extends")] == ["TRAFO.Kin_Coupled"]
 
 
 def test_text_survives_whatever_is_in_it(tmp_path: Path) -> None:
