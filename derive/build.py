@@ -22,13 +22,14 @@ from derive.forward import (
 )
 from derive.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics import Freedom, Kinematics, Margin
+from derive.legs import MARGIN
 from derive.mechanism import DescriptionError, Mechanism, Turning
-from derive.newton import START_POSITION, START_ROTATION, at_given, at_home, platform_pose
+from derive.newton import START_POSITION, START_ROTATION, at_given, at_home, found_from, search_program
 from derive.parameters import machine_parameters, setup_program
 from derive.passes import assemble, hoist
-from derive.platform import MARGIN, platform_checks, platform_singularity
+from derive.platform import platform_checks, platform_singularity
 from derive.pose import pose_of
-from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real
+from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real, shared
 from derive.searching import DETERMINANT, branch_statements, determinant_margin, margin_statements, solve_both
 from derive.shared_names import refuse_shared_names
 from derive.solve import Unsolved
@@ -81,7 +82,8 @@ def _platform(mechanism: Mechanism) -> Kinematics:
     if inverse.derivation.slopes or mechanism.branches:
         raise DescriptionError("a platform that moves freely has no branches: its closure must determine every joint")
     statements = inverse.derivation.statements
-    forward, from_start = (platform_pose(mechanism, start(mechanism)) for start in (at_home, at_given))
+    search = search_program(mechanism)
+    forward, from_start = (found_from(mechanism, start, search) for start in (at_home(mechanism), at_given()))
     checks = (*platform_checks(mechanism, (*inverse.naming, *statements)), *bound_checks(mechanism, offset=False))
     programs = [
         forward_program(mechanism, forward, ()),
@@ -130,7 +132,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
     """Everything together, with what depends on parameters alone moved into the setup."""
     parameters = machine_parameters(mechanism)
     constants = {o.name for o in setup_program(mechanism, parameters, ()).outputs}
-    lowered, hoisted = hoist(programs, constants)
+    lowered, hoisted = hoist((*shared(programs), *programs), constants)
     setup = setup_program(mechanism, parameters, hoisted)
     finished = {program.name: program for program in lowered}
     for program in lowered:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from derive.mechanism import Branch, Joint, Limited, Mechanism, Parameter
-from derive.program import Program
+from derive.program import Program, shared
 
 
 class Freedom(Enum):
@@ -97,6 +97,20 @@ class Kinematics:
     forward_from: Program | None = None
     carried: Program | None = None
     evidence: Evidence | None = None
+
+    @property
+    def shared(self) -> tuple[Program, ...]:
+        """The programs that several of these call: one that is called comes before the one that calls it."""
+        return shared(self.programs)
+
+    @property
+    def programs(self) -> tuple[Program, ...]:
+        """All programs but `setup`, without those that are shared."""
+        found = (
+            self.forward, self.forward_from, self.orientation, self.branch, self.limits, self.singularity, self.jacobian,
+            self.image, self.projection, self.offset_branch, self.offset_configuration,
+        )  # fmt: skip
+        return tuple(program for program in found if program is not None)
 
     @property
     def branches(self) -> tuple[Branch, ...]:

@@ -160,6 +160,10 @@ class Rod:
     base: tuple[sp.Expr, ...]
     plate: tuple[sp.Expr, ...]
     length: sp.Expr
+    base_cone: sp.Expr | None = None
+    """The largest angle between the rod and its direction at the home pose, as its joint on the base sees it (radians)."""
+    plate_cone: sp.Expr | None = None
+    """The same, as its joint on the plate sees it."""
 
     @property
     def equation(self) -> sp.Expr:
@@ -306,9 +310,16 @@ def assembly(name: str, indicator: object, *, margin: str, handedness: object = 
     return Assembly(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin, sp.sympify(handedness))
 
 
-def rod(name: str, base: Sequence[object], plate: Sequence[object], length: object) -> Rod:
+def rod(
+    name: str,
+    base: Sequence[object],
+    plate: Sequence[object],
+    length: object,
+    base_cone: sp.Expr | None = None,
+    plate_cone: sp.Expr | None = None,
+) -> Rod:
     """A rigid rod between a point that joints move and a point of the plate."""
-    return Rod(name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length))
+    return Rod(name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone)
 
 
 def on_plate(x: object, y: object, z: object) -> tuple[sp.Expr, ...]:

@@ -115,6 +115,11 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
         yield "the mechanism needs either a chain or closure equations"
     if mechanism.task.position not in ("xy", "xyz") and not mechanism.is_orientation:
         yield f"the task commands {mechanism.task.position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
+    cones = [cone for rod in mechanism.rods for cone in (rod.base_cone, rod.plate_cone) if cone is not None]
+    if cones and not mechanism.home:
+        yield "a cone of a rod's joint is about the rod at the home pose, and the mechanism has none"
+    for cone in cones:
+        yield from _unknown("a cone of a rod's joint", cone, _parameters(mechanism), "a parameter of this mechanism")
     used = {s for _, e in _equations(mechanism) for s in e.free_symbols}
     for joint in mechanism.joints:
         if joint.symbol not in used:

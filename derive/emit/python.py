@@ -11,11 +11,11 @@ from derive.emit import python_entries as entries
 from derive.emit import python_setup as setup
 from derive.emit.language import GENERATED, environment
 from derive.emit.python_layout import WIDTH, fold
-from derive.emit.python_methods import branch, forwards, limits, methods
+from derive.emit.python_methods import branch, forwards, limits, methods, shared
 from derive.emit.python_printer import ARRAY_NAMES, literal
 from derive.emit.python_program import Method, array_body, functions, has_loop, scalar_body
 from derive.kinematics import Kinematics
-from derive.program import EDGE, FREE_ANGLE, LARGEST, PIVOT, SINGULAR, TIE, Status
+from derive.program import EDGE, FREE_ANGLE, LARGEST, PIVOT, SINGULAR, SOLVABLE, TIE, Status
 
 name = "python"
 
@@ -80,6 +80,7 @@ def _templates() -> Environment:
         "largest": literal(float(LARGEST)),
         "pivot": literal(float(PIVOT)),
         "singular": literal(float(SINGULAR)),
+        "solvable": literal(float(SOLVABLE)),
         "tie": literal(float(TIE)),
     }
     return templates
@@ -99,7 +100,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     """The class of a mechanism, and its programs on arrays."""
     names = _index(kin)
     scalar = methods(kin)
-    arrays = [*forwards(kin), branch(kin), limits(kin)]
+    arrays = [*shared(kin), *forwards(kin), branch(kin), limits(kin)]
     array_programs = "Programs" if kin.forward_from is None else "StartedPrograms"
     array_types = _ARRAY_TYPES + (("advanced", "initial", "settled") if any(has_loop(m.program) for m in arrays) else ())
     programs = tuple(m.program for m in scalar) + (kin.setup,)
@@ -154,6 +155,8 @@ def _head(method: Method, prefix: str) -> list[str]:
 
 def _array_head(method: Method) -> list[str]:
     arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
+    if method.is_shared:
+        return fold(f"def {method.name}(self{arguments}, status: Codes) -> {method.kind}:", 4)
     kind = "tuple[Vector, Rotation, Reals]" if method.kind == "Pose" else method.kind
     result = f"tuple[{kind}, Codes]" if kind else "Codes"
     return fold(f"def {method.name}(self{arguments}) -> {result}:", 4)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from derive.emit.python_calls import GIVEN
 from derive.emit.python_program import Argument, Method, Shape
 from derive.kinematics import Kinematics
 
@@ -23,6 +24,7 @@ def methods(kin: Kinematics) -> list[Method]:
     rows = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i, _ in enumerate(kin.rows, 1))
     margins = tuple(m.name for m in kin.margins)
     found = [
+        *shared(kin),
         *forwards(kin),
         Method("orientation", "The rotation of the frame.", kin.orientation, (axes,), "Rotation", ROTATION),
         branch(kin),
@@ -43,6 +45,17 @@ def methods(kin: Kinematics) -> list[Method]:
     if kin.offset_configuration is not None:
         text = "The signed margin of every branch for a point off the flange."
         found.append(Method("offset_measures", text, kin.offset_configuration, (axes, offset), "Reals", measures))
+    return found
+
+
+def shared(kin: Kinematics) -> list[Method]:
+    """The programs that others call: arguments and results are tuples of their names."""
+    constants = {o.name for o in kin.setup.outputs}
+    found: list[Method] = []
+    for program in kin.shared:
+        given = Argument(GIVEN, "Reals", tuple(s.name for s in program.inputs if s.name not in constants))
+        outputs = tuple(o.name for o in program.outputs)
+        found.append(Method(program.name, f"{program.summary}.", program, (given,), "Reals", outputs, is_shared=True))
     return found
 
 

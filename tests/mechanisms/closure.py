@@ -34,6 +34,7 @@ class Closure:
         self.angles = np.array([j.is_angle for j in mechanism.joints])
         self.task = ["xyz".index(c) for c in mechanism.task.position]
         self.follows_turn = mechanism.task.turning is Turning.ABOUT_Z
+        self._equations: list[sp.Expr] = list(mechanism.closure)
 
     def joints(self, axes: Array) -> Array:
         """Joint values in radians and lengths: motor = axis - offset, joint = motor + coupling."""
@@ -121,7 +122,7 @@ class Closure:
 
     def _stated(self, joints: Array, positions: Array) -> Array:
         symbols = [*(j.symbol for j in self.mechanism.joints), *POSITION]
-        return self._evaluate(self.mechanism.closure, symbols, np.hstack([joints, positions]))
+        return self._evaluate(self._equations, symbols, np.hstack([joints, positions]))
 
     def _at_joints(self, expressions: Sequence[sp.Expr], joints: Array) -> Array:
         return self._evaluate(expressions, [j.symbol for j in self.mechanism.joints], joints)

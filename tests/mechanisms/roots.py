@@ -8,6 +8,7 @@ from tests.mechanisms.closure import Array, derivative
 from tests.mechanisms.machines import Machine
 
 STARTS = 32
+"""Newton's method starts from so many places, twice as many for every branch after the first."""
 STEPS = 25
 SAME = 1e-6
 """Solutions nearer than this (radians, or per reach) are one."""
@@ -18,11 +19,13 @@ def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]
     closure = machine.closure
     rng = np.random.default_rng(77)
     scale = np.where(closure.angles, 1.0, machine.reach)
-    joints = rng.uniform(-1, 1, (STARTS, len(scale))) * np.where(closure.angles, np.pi, 2 * machine.reach)
+    starts = STARTS * 2 ** max(0, len(machine.mechanism.branches) - 1)
+    joints = rng.uniform(-1, 1, (starts, len(scale))) * np.where(closure.angles, np.pi, 2 * machine.reach)
     joints = _newton(machine, joints, position, rotation, STEPS)
     joints = principal(machine, joints, position, rotation)
     found: list[Array] = []
-    for row in joints[_solved(machine, joints, position, rotation)]:
+    solved = joints[_solved(machine, joints, position, rotation)]
+    for row in solved[machine.is_own(solved, position)]:
         if not any(np.abs(distance(machine, row, other)).max() < SAME for other in found):
             found.append(row)
     return found

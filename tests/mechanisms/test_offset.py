@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from softkin import Status
 
 from derive.mechanism import Mechanism
@@ -68,6 +69,7 @@ def test_who_offers_it(mechanism: Mechanism, machines: tuple[Machine, ...]) -> N
         assert hasattr(machine.robot, "configuration_offset") == (mechanism.name not in WITHOUT)
 
 
+@pytest.mark.serial
 def test_round_trip_with_the_reference_at_the_same_axes(machines: tuple[Machine, ...]) -> None:
     for machine in offered(machines):
         axes, offsets = drawn(machine, 1)
@@ -77,6 +79,7 @@ def test_round_trip_with_the_reference_at_the_same_axes(machines: tuple[Machine,
             assert np.abs(np.subtract(found, values)).max() < ROUND_TRIP
 
 
+@pytest.mark.serial
 def test_every_branch_brings_the_point_there(machines: tuple[Machine, ...]) -> None:
     """With any reference; joints that the position does not determine stay where the reference is."""
     for machine in offered(machines):

@@ -102,7 +102,8 @@ def test_configuration_bytes_are_those_of_the_description(mechanism: Mechanism, 
         turning = ["A4", "A1", "A2"]
     assert [b.name for b in robot.CONFIGURATION] == names + turning
     assert [b.kind for b in robot.CONFIGURATION] == ["branch"] * len(names) + ["period"] * len(turning)
-    assert [b.branches for b in robot.CONFIGURATION] == [("right", "left")] * len(names) + [()] * len(turning)
+    ways = [b.names for b in mechanism.branches] if mechanism.rods else [("right", "left")] * len(names)
+    assert [b.branches for b in robot.CONFIGURATION] == ways + [()] * len(turning)
 
 
 def test_parameters_are_those_of_the_description(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
@@ -110,6 +111,8 @@ def test_parameters_are_those_of_the_description(mechanism: Mechanism, machines:
     expected += [f"offset_{j.key}" for j in mechanism.joints]
     keys = [j.key for j in mechanism.joints] + [q.name for q in mechanism.limited]
     expected += [f"{word}_{key}" for key in keys for word in ("lower", "upper")]
+    if mechanism.assembly is not None:
+        expected += [f"{mechanism.assembly.name}_{mechanism.assembly.names[1]}", "min_type2_margin"]
     assert [p.name for p in machines[0].robot.PARAMETERS] == [*expected, "check_limits"]
     assert all(p.meaning and p.range for p in machines[0].robot.PARAMETERS)
 

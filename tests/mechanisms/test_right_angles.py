@@ -14,6 +14,8 @@ from tests.mechanisms.machines import Machine, machine
 from tests.mechanisms.refusals import refusal
 from tests.mechanisms.test_round_trip import slots
 
+pytestmark = pytest.mark.serial
+
 ANGLES = tuple(90.0 * k for k in range(-4, 5))
 LABELS = ("plain", "nominal", "equal", "unequal", "offset")
 REGULAR, SINGULAR = 1e-12, 1e-10

@@ -136,12 +136,16 @@ def nearest_on_arc(angle: Real, centre: Real, half: Real) -> Real:
 
 
 def solve(matrix: Sequence[Reals], right: Sequence[Reals]) -> Reals:
-    """The determinant, then the solution by rows: LU decomposition with partial pivoting. Zeros for a singular matrix."""
+    """The determinant, then the solution by rows: LU decomposition with partial pivoting.
+
+    Zeros where the matrix is singular, and where a number is none, or beyond 1e30 in size.
+    """
     size = len(matrix)
     rows = [[*row, *more] for row, more in zip(matrix, right or [()] * size, strict=True)]
     table = np.array(np.broadcast_arrays(*(entry for row in rows for entry in row))).reshape(size, len(rows[0]), -1)
-    tiny = 1e-14 * np.max(np.abs(table[:, :size]), axis=(0, 1))
-    determinant, regular = np.ones_like(tiny), np.ones(tiny.shape, np.bool_)
+    largest = np.max(np.abs(table[:, :size]), axis=(0, 1))
+    tiny, determinant = 1e-14 * largest, np.ones_like(largest)
+    regular = np.all(np.abs(table) <= 1e30, axis=(0, 1)) & (largest >= 1.0 / 1e30)
     every = np.arange(len(tiny))
     for k in range(size):
         best = k + np.argmax(np.abs(table[k:, k]), axis=0)
