@@ -42,23 +42,33 @@ def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
 
 def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
     """Rows of the task by axes; rotary axes per radian."""
-    width = len(mechanism.joints)
     if mechanism.is_platform:
         solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
-        return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, width))
-    matrix, naming = (_by_screws(mechanism), ()) if mechanism.chain is not None else _by_closure(mechanism)
+        return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, len(mechanism.joints)))
+    if mechanism.chain is not None:
+        return _per_motor("jacobian", mechanism, _by_screws(mechanism, jacobian_rows(mechanism)), forward.statements)
+    matrix, naming = _by_closure(mechanism)
+    return _per_motor("jacobian", mechanism, matrix, (*forward.statements, *naming))
+
+
+def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
+    """All six rows of the twist of a chain's end, whatever the task is: what a coupling asks for."""
+    return _per_motor("twist", mechanism, _by_screws(mechanism, _ROWS[:6]), forward.statements)
+
+
+def _per_motor(name: str, mechanism: Mechanism, matrix: sp.Matrix, known: Sequence[Statement]) -> Program:
     coupled = matrix * _motor_matrix(mechanism)
     planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
     entries = [sp.expand_mul(e) if planar else e for e in coupled]
     lets, values = named_trigonometry(mechanism, entries)
-    return assemble("jacobian", (*forward.statements, *naming, *lets), _entries_of(values, width))
+    return assemble(name, (*known, *lets), _entries_of(values, len(mechanism.joints)))
 
 
 def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:
     return [Output(f"j{k // width + 1}{k % width + 1}", v) for k, v in enumerate(values)]
 
 
-def _by_screws(mechanism: Mechanism) -> sp.Matrix:
+def _by_screws(mechanism: Mechanism, rows: Sequence[str]) -> sp.Matrix:
     """A serial chain: every factor moves the end as a screw (z × p), scaled by how each joint moves the factor."""
     assert mechanism.chain is not None
     screws, position = _screws(mechanism, mechanism.chain)
@@ -74,7 +84,7 @@ def _by_screws(mechanism: Mechanism) -> sp.Matrix:
     if mechanism.task.turning is Turning.DIRECTION:
         rotation = sp.Matrix(3, 3, list(ROTATION_ENTRIES))
         full = sp.Matrix.vstack(full, (rotation.T * full[3:, :])[:2, :])
-    chosen = [_ROWS.index(row) for row in jacobian_rows(mechanism)]
+    chosen = [_ROWS.index(row) for row in rows]
     return full.extract(chosen, list(range(full.cols)))
 
 

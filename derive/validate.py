@@ -114,7 +114,7 @@ def _shape(mechanism: Mechanism) -> Iterator[str]:
     if (mechanism.chain is None) == (not mechanism.equations):
         yield "the mechanism needs either a chain or closure equations"
     if mechanism.task.position not in ("xy", "xyz") and not mechanism.is_orientation:
-        yield f"the task commands {mechanism.task.position!r}: it must be 'xy' or 'xyz', or '' of a chain that only turns the flange"
+        yield f"the task commands {mechanism.task.position!r}: it must be 'xy' or 'xyz', or '' of a chain that turns a flange"
     used = {s for _, e in _equations(mechanism) for s in e.free_symbols}
     for joint in mechanism.joints:
         if joint.symbol not in used:

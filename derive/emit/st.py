@@ -16,7 +16,7 @@ from derive.emit.st_expression import literal
 from derive.emit.st_layout import assigned
 from derive.emit.st_methods import methods_of
 from derive.kinematics import Kinematics
-from derive.program import EDGE, FREE_ANGLE, LARGEST, PIVOT, TIE
+from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, ROTATION, TIE
 
 name = "st"
 
@@ -40,6 +40,8 @@ def _templates() -> Environment:
         free_angle=literal(float(FREE_ANGLE)),
         edge=literal(float(EDGE)),
         largest=literal(float(LARGEST)),
+        held=literal(float(HELD)),
+        rotation=literal(float(ROTATION)),
         pivot=literal(float(PIVOT)),
         tie=literal(float(TIE)),
     )

@@ -14,8 +14,9 @@ from derive.catalogue import catalogue
 from derive.mechanism import Joint, Mechanism, Parameter, Role
 from tests.mechanisms.closure import Array, Closure
 
-MECHANISMS = tuple(m for _, m in catalogue() if not m.rods)
-"""The serial mechanisms: closed loops go through tests/loops, the hexapod through test_hexapod as well."""
+MECHANISMS = tuple(m for _, m in catalogue() if not m.rods and not m.is_orientation)
+"""The serial mechanisms: closed loops go through tests/loops, the hexapod through test_hexapod as well, orientation kinematics
+through tests/coupling."""
 """The full pose has tests of its own: `test_hexapod.py`."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
