@@ -9,9 +9,9 @@ import sympy as sp
 
 from derive.assembling import Assembled, assembled, assembly_checks, bound_checks
 from derive.branching import Assignment, assign, margin_lets, with_branch_signs
-from derive.carried import carried_program
+from derive.carried import BASE_AXIS, FLANGE_AXIS, coupling_programs
 from derive.closure import flange_rotation, heading_of
-from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program
+from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program, twist_program
 from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
 from derive.forward import (
     Forward,
@@ -67,10 +67,12 @@ def build(mechanism: Mechanism) -> Kinematics:
         jacobian,
         _image_program(mechanism),
     ]
-    if mechanism.task.turning in (Turning.ABOUT_Z, Turning.FULL):
+    if mechanism.task.turning is not Turning.NONE:
         programs.append(_projection_program(mechanism))
+    if _turns_in_a_coupling(mechanism):
+        programs.append(twist_program(mechanism, forward))
     if mechanism.is_orientation:
-        programs.append(carried_program(mechanism))
+        programs += coupling_programs(mechanism)
     elif mechanism.offset_interface:
         programs += _offset_programs(mechanism, closed)
     return _finished(mechanism, programs, kept)
@@ -156,7 +158,10 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
         freedom=_freedom(mechanism),
         reads_rotation=mechanism.task.turning is not Turning.NONE,
         forward_from=finished.get("forward_from"),
+        twist=finished.get("twist"),
+        compatible=finished.get("compatible"),
         carried=finished.get("carried"),
+        total_image=finished.get("total_image"),
     )
 
 
@@ -165,7 +170,7 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
     allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
     allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
-    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION)}
+    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}
     strangers = [s.name for s in program.inputs if s.name not in allowed]
     if strangers:
         raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
@@ -225,8 +230,8 @@ def _inside(key: str, value: sp.Symbol, note: str) -> Require:
 
 
 def _projection_program(mechanism: Mechanism) -> Program:
-    """The nearest rotation that the flange can have."""
-    if mechanism.task.turning is Turning.FULL:
+    """The nearest rotation that the flange can have; of a direction, any twist about it."""
+    if mechanism.task.turning in (Turning.DIRECTION, Turning.FULL):
         own = [Output(r.name, r) for r in ROTATION_ENTRIES]
         return assemble("projection", (*finite(ROTATION_ENTRIES), *is_rotation()), own)
     assert mechanism.chain is not None
@@ -235,6 +240,11 @@ def _projection_program(mechanism: Mechanism) -> Program:
     rotation = turned * flange_rotation(mechanism.chain)
     outputs = [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, rotation, strict=True)]
     return assemble("projection", (*finite(ROTATION_ENTRIES), *is_rotation(), *heading_lets(mechanism)), outputs)
+
+
+def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
+    """Whether a coupling with this mechanism needs to know how its frame turns: the task's rows do not say all of it."""
+    return (mechanism.is_position or mechanism.is_orientation) and _freedom(mechanism) is not Freedom.ZERO
 
 
 def _freedom(mechanism: Mechanism) -> Freedom:

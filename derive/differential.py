@@ -42,29 +42,42 @@ def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
 
 def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
     """Rows of the task by axes; rotary axes per radian."""
-    width = len(mechanism.joints)
     if mechanism.is_platform:
         solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
-        return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, width))
+        return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, len(mechanism.joints)))
     statements, values = jacobian_entries(mechanism)
-    return assemble("jacobian", (*forward.statements, *statements), _entries_of(values, width))
+    return assemble("jacobian", (*forward.statements, *statements), _entries_of(values, len(mechanism.joints)))
+
+
+def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
+    """All six rows of the twist of a chain's end, whatever the task is: what a coupling asks for."""
+    lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
+    return assemble("twist", (*forward.statements, *lets), _entries_of(values, len(mechanism.joints)))
 
 
 def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
     """The entries by rows at a pose that forward kinematics has found, and statements that they need besides."""
-    matrix, naming = (_by_screws(mechanism), ()) if mechanism.chain is not None else _by_closure(mechanism)
+    if mechanism.chain is not None:
+        return _per_motor(mechanism, _by_screws(mechanism, jacobian_rows(mechanism)))
+    matrix, naming = _by_closure(mechanism)
+    lets, values = _per_motor(mechanism, matrix)
+    return (*naming, *lets), values
+
+
+def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Let, ...], list[sp.Expr]]:
+    """The entries by motors, their sines and cosines under names."""
     coupled = matrix * _motor_matrix(mechanism)
     planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
     entries = [sp.expand_mul(e) if planar else e for e in coupled]
     lets, values = named_trigonometry(mechanism, entries)
-    return (*naming, *lets), values
+    return lets, values
 
 
 def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:
     return [Output(f"j{k // width + 1}{k % width + 1}", v) for k, v in enumerate(values)]
 
 
-def _by_screws(mechanism: Mechanism) -> sp.Matrix:
+def _by_screws(mechanism: Mechanism, rows: Sequence[str]) -> sp.Matrix:
     """A serial chain: every factor moves the end as a screw (z × p), scaled by how each joint moves the factor."""
     assert mechanism.chain is not None
     screws, position = _screws(mechanism, mechanism.chain)
@@ -80,7 +93,7 @@ def _by_screws(mechanism: Mechanism) -> sp.Matrix:
     if mechanism.task.turning is Turning.DIRECTION:
         rotation = sp.Matrix(3, 3, list(ROTATION_ENTRIES))
         full = sp.Matrix.vstack(full, (rotation.T * full[3:, :])[:2, :])
-    chosen = [_ROWS.index(row) for row in jacobian_rows(mechanism)]
+    chosen = [_ROWS.index(row) for row in rows]
     return full.extract(chosen, list(range(full.cols)))
 
 

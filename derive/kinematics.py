@@ -72,8 +72,17 @@ class Kinematics:
     projection       r11…r33 → the same, projected to the nearest rotation the flange can have; None where not chosen
     offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None where the interface is not offered
     offset_configuration   axis_*, point_* → `branch_<name>`; None likewise
-    carried          nothing → base_x…z, carried_x…z (as the tool sees it), wrist_offset (a size): where the end point of an
-                     orientation kinematics is held, for what it can be combined with; None for any other
+    twist            axis_* → j11 … of all six rows, x y z turn x turn y turn z; None where no coupling asks for it, and where
+                     the flange keeps its orientation: then the rows of `jacobian` are all there are
+
+    Of an orientation kinematics, None for any other. The flange that carries it turns about the line flange_axis_* (as the
+    flange sees it) = base_axis_* (as the machine does); both are zero for a flange that turns freely:
+
+    compatible       flange_axis_* → nothing; its conditions are what a flange that turns can carry
+    carried          flange_axis_*, base_axis_*, r11…r33 commanded (those it reads) → x y z from the flange to the end point
+    total_image      r11…r33 one orientation of the flange, flange_axis_*, base_axis_* → the image of both together as `image`
+                     has it, if the flange keeps its orientation or turns about the same axis: `apart`, the sine of the
+                     angle between the two axes, says whether it is the same
     """
 
     mechanism: Mechanism
@@ -95,7 +104,10 @@ class Kinematics:
     freedom: Freedom
     reads_rotation: bool
     forward_from: Program | None = None
+    twist: Program | None = None
+    compatible: Program | None = None
     carried: Program | None = None
+    total_image: Program | None = None
     evidence: Evidence | None = None
 
     @property

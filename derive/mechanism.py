@@ -272,6 +272,11 @@ class Mechanism:
         return self.chain is not None and not self.task.position
 
     @property
+    def is_position(self) -> bool:
+        """Whether a position kinematics: it can carry an orientation kinematics, and follows no tool direction itself."""
+        return bool(self.task.position) and self.task.turning in (Turning.NONE, Turning.ABOUT_Z)
+
+    @property
     def equations(self) -> tuple[sp.Expr, ...]:
         """All stated closure equations."""
         return (*self.closure, *(rod.equation for rod in self.rods))

@@ -39,6 +39,8 @@ LIMIT = sp.Float("1e-9")
 """Relative tolerance of an axis limit."""
 SHORTEST_LINK = sp.Float("1e-9")
 """An effective link shorter than this fraction of the machine's scale cannot be aimed."""
+HELD = sp.Float("1e-9")
+"""A shift up to this size (the user's unit) may turn with a flange unnoticed; and axes this far apart are one."""
 SINGULAR = sp.Float("1e-3")
 """A pose is singular where a margin is smaller than this in size."""
 PIVOT = sp.Float("1e-14")

@@ -18,7 +18,8 @@ from tests.st.library import Library, compile_st
 FILES = {str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))}
 UNITS = [name for name in FILES if not name.startswith("softkin/")]
 CONTRACT = load()
-PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits", "FindPlatform"}
+PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits", "FindPlatform", "EndPointOnFlange"}
+ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")
 
 # Every piece of text that is no comment, string or pragma.
 _SILENT = re.compile(r"\(\*.*?\*\)|//[^\n]*|\{[^}]*\}|'[^'\n]*'", re.DOTALL)
@@ -84,16 +85,32 @@ def test_the_newest_interfaces_that_fit(file: str) -> None:
     assert {"ISMKinematicWithInfo2", "ISMKinematicWithInitialization"} <= set(names)
     assert ("ISMKinematicWithConfigurations4" in names) == has_configuration
     assert f"{block.name}_ReadConfig" in library().objects or not has_configuration
-    is_full = "GetOrientationImage" not in {m.name for m in block.methods}
+    is_orientation = file.startswith("orientation/")
+    is_position = "GetOrientationImage" in {m.name for m in block.methods}
     offset = "ISMPositionKinematics_Offset2" if has_configuration else "ISMPositionKinematics_Offset"
-    assert sum(name in ("ISMPositionKinematics2", offset) for name in names) == (0 if is_full else 1)
-    assert not is_full or "ISMKinematicsWithOrientationImage2" in names
+    assert sum(name in ("ISMPositionKinematics2", offset) for name in names) == is_position
+    assert sum(name in ORIENTATION for name in names) == (3 if is_orientation else 0)
+    assert is_position or is_orientation or "ISMKinematicsWithOrientationImage2" in names
     assert "ISMKinPeriodHandling" not in names or has_configuration
-    assert not any("WithOriImage" in name for name in names)
+    assert "ISMOrientationKinematicsWithOriImage" not in names  # it declares another GetOrientationImage than a position does
+    assert not (is_orientation and (is_position or "ISMKinematicsWithOrientationImage2" in names))
 
 
-def test_the_reference_block_implements_everything() -> None:
-    names = [name.removeprefix("TRAFO.") for name in blocks()["scara/Kin_Scara4_ZCcoupled_Type1.st"].implements]
+def test_the_kinds_of_the_vendors_parts() -> None:
+    """A position part whose flange turns freely is one still; a complete robot is none."""
+    kinds = {
+        "articulated/Softkin_Pos_RRR.st": "ISMPositionKinematics_Offset2",
+        "articulated/Softkin_5Axes.st": "ISMKinematicsWithOrientationImage2",
+        "articulated/Softkin_ArticulatedRobot_6DOF.st": "ISMKinematicsWithOrientationImage2",
+        "orientation/Softkin_Wrist3.st": "ISMOrientationKinematics3",
+    }
+    for file, interface in kinds.items():
+        assert f"TRAFO.{interface}" in blocks()[file].implements
+
+
+def test_two_blocks_implement_everything() -> None:
+    files = ("scara/Kin_Scara4_ZCcoupled_Type1.st", "orientation/Softkin_Wrist3.st")
+    names = [name.removeprefix("TRAFO.") for file in files for name in blocks()[file].implements]
     assert set(CONTRACT.interfaces) == {i.name for i in CONTRACT.closure(names)}
 
 
@@ -158,8 +175,9 @@ def _written(body: tuple[ast.Statement, ...]) -> Iterator[str]:
 def test_inputs_are_documented(file: str) -> None:
     block = blocks()[file]
     assert any("'sm_kin_libdoc'" in p for p in block.pragmas)
-    (axes,) = (p for p in block.pragmas if "'sm_kin_axes'" in p)
-    assert re.fullmatch(r"\{attribute 'sm_kin_axes' := '\w+(, \w+)*'\}", axes)
+    axes = [p for p in block.pragmas if "'sm_kin_axes'" in p]
+    assert len(axes) == (file != "orientation/Softkin_Tool.st")
+    assert all(re.fullmatch(r"\{attribute 'sm_kin_axes' := '\w+(, \w+)*'\}", a) for a in axes)
     for title in ("**Axes**", "**Parameters**", "**Configuration**", "**Singularities**", "**Verification**"):
         assert title in block.comment
     for given in (v for s in block.sections if s.scope == "VAR_INPUT" for v in s.variables):

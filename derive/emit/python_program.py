@@ -67,7 +67,9 @@ def scalar_body(method: Method) -> list[str]:
 def array_body(method: Method) -> list[str]:
     """The body on arrays: every statement for all rows, a row's status is its first condition that does not hold."""
     lines = [*_unpacked(method), *_constants(method, "self.constants")]
-    lines += [] if method.is_shared else [f"status = passed({method.arguments[0].name})"]
+    if not method.is_shared:
+        first = method.arguments[0]
+        lines.append(f"status = passed({first.name}{'[0]' if first.kind == 'Rotation' else ''})")
     for statement, same in _grouped(method.program.body):
         if isinstance(statement, Iterate):
             lines += [*array_head(statement, _ARRAY), *_step(statement, _ARRAY), *array_end(statement, _ARRAY)]

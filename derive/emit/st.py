@@ -22,7 +22,7 @@ from derive.emit.st_overview import overview
 from derive.emit.st_reserved import refuse_clashes
 from derive.emit.st_uses import needed
 from derive.kinematics import Kinematics
-from derive.program import EDGE, FREE_ANGLE, LARGEST, PIVOT, SOLVABLE, TIE
+from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, ROTATION, SOLVABLE, TIE
 
 _FOLDER = "st"
 _SHARED = "softkin"
@@ -93,6 +93,8 @@ def _templates() -> Environment:
         free_angle=literal(float(FREE_ANGLE)),
         edge=literal(float(EDGE)),
         largest=literal(float(LARGEST)),
+        held=literal(float(HELD)),
+        rotation=literal(float(ROTATION)),
         pivot=literal(float(PIVOT)),
         solvable=literal(float(SOLVABLE)),
         smallest=literal(1.0 / float(SOLVABLE)),

@@ -10,7 +10,7 @@ from jinja2 import Environment
 
 from derive.emit.st_block import Block, constants, direct
 from derive.emit.st_calls import BranchCall, branch_call
-from derive.emit.st_contract import Contract, Signature
+from derive.emit.st_contract import Contract, Parameter, Signature
 from derive.emit.st_inputs import number_of
 from derive.emit.st_names import joined, stored_name
 from derive.emit.st_program import Printed, printed
@@ -34,6 +34,12 @@ _FIRST = (
     "GetFlangeOrientationImageWithOri",
     "AxesToConfiguration_Offset",
     "CartesianToAxes_Offset",
+    "IsCompatibleWithPosKin",
+    "GetPositionFromOrientation3",
+    "GetPositionFromOrientation2",
+    "GetPositionFromOrientation",
+    "GetOrientationImageTotal",
+    "GetOrientationImageWithOri",
 )
 
 
@@ -67,6 +73,8 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
         spelled[joint.axis.name] = f"a.a{index}"
         spelled[joint.reference.name] = f"aRef.a{index}"
         spelled[joint.turn.name] = joined(joint.turn.name)
+    for axis in "xyz":
+        spelled[f"flange_axis_{axis}"], spelled[f"base_axis_{axis}"] = f"flangeAxis.d{axis.upper()}", f"baseAxis.d{axis.upper()}"
     spelled |= {f"sigma_{b.name}": joined(f"sigma_{b.name}") for b in kinematics.branches}
     return spelled | {f"r{r}{c}": f"rot[{r}, {c}]" for r in (1, 2, 3) for c in (1, 2, 3)}
 
@@ -82,6 +90,10 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
         "GetFlangeOrientationImageWithOri": kinematics.projection,
         "AxesToConfiguration_Offset": kinematics.offset_configuration,
         "Jacobian": kinematics.jacobian,
+        "IsCompatibleWithPosKin": kinematics.compatible,
+        "GetPositionFromOrientation3": kinematics.carried,
+        "GetOrientationImageTotal": kinematics.total_image,
+        "GetOrientationImageWithOri": kinematics.image if kinematics.total_image else kinematics.projection,
     }
     solved = {"CartesianToAxes": kinematics.branch, "CartesianToAxes_Offset": kinematics.offset_branch}
     names = _names(block, contract)
@@ -93,6 +105,8 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
         if program is None:
             yield _Source(known[name], programs.get(name))
             yield from _shared(programs.get(name), kinematics, contract, ready)
+            if name == "GetPositionFromOrientation3":
+                yield _Source(_end_point(known[name], contract))
             continue
         call = branch_call(known[name], program, kinematics, block)
         yield _Source(known[name], call=call)
@@ -122,9 +136,18 @@ def _check_limits(contract: Contract) -> Signature:
     return Signature("TestLimits", contract.spelling["types"]["error"], (axes,), "PRIVATE")
 
 
+def _end_point(public: Signature, contract: Contract) -> Signature:
+    """Where the end point is on a flange of known orientation."""
+    flange = Parameter("VAR_IN_OUT CONSTANT", "mFlange", contract.spelling["types"]["matrix"])
+    kept = (p for p in public.parameters if p.name != "oriInfo")
+    ordered = sorted((*kept, flange), key=lambda p: p.name != "v")
+    return Signature("EndPointOnFlange", public.returns, tuple(ordered), "PRIVATE")
+
+
 def _method(source: _Source, kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> Method:
     name = source.signature.name
-    context: dict[str, object] = {"block": block, "method": name, "call": source.call}
+    reads = kinematics.reads_rotation
+    context: dict[str, object] = {"block": block, "method": name, "call": source.call, "reads_rotation": reads}
     if source.program is not None:
         context["program"] = program = _printed(source, source.program, kinematics, block, contract)
         own = own_names(source.program, spelled_inputs(kinematics))

@@ -15,8 +15,8 @@ _PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
 
 TEMPLATE_LOCALS = frozenset(
     """
-    branch candidate column configuration distance failure found least nothing order projected rot row slot solution
-    status tried
+    apart baseaxis branch candidate column configuration distance failure flange flangeaxis found frame identity least
+    nothing order projected relative rot rotation row slot solution space status total tried
     """.split()
 )
 """Variables that the templates of methods declare."""

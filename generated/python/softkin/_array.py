@@ -14,7 +14,7 @@ from softkin._scalar import DEGREE
 from softkin._types import Status
 
 __all__ = [
-    "DEGREE", "Array", "Codes", "Programs", "Real", "Reals", "Rotation", "Vector",
+    "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Vector",
     "StartedPrograms", "absolute", "advanced", "atan2", "cos", "initial", "nearest_on_arc", "nearest_period", "passed",
     "require", "root", "select", "settled", "sin", "solve",
 ]  # fmt: skip
@@ -61,9 +61,17 @@ class StartedPrograms(Programs):
         """Forward kinematics from a given start."""
 
 
+class OrientationPrograms(Programs):
+    """The same of an orientation kinematics."""
+
+    @abstractmethod
+    def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
+        """From a flange that turns to the end point."""
+
+
 def passed(values: tuple[Real, ...]) -> Codes:
-    """The statuses of rows before any condition: all OK."""
-    return np.zeros(np.shape(values[0]), np.uint8)
+    """The statuses of rows before any condition: all OK. One for all rows where there are no values."""
+    return np.zeros(np.shape(values[0]) if values else (), np.uint8)
 
 
 def require(status: Codes, condition: Truth, otherwise: Status) -> None:

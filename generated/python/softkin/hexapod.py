@@ -511,6 +511,7 @@ class Hexapod(IterativeForward):
     MARGINS = ("rods_dependent",)
     READS_ROTATION = True
     FREEDOM = "three"
+    ROLE = "complete"
     BRANCHES = 0
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)
