@@ -31,10 +31,6 @@ from derive.program import (
 )
 
 
-class Unreachable(Exception):
-    """An angle can be free where later steps need more of it than an arc can say."""
-
-
 @dataclass(frozen=True)
 class _Part:
     """A name that the angle moves: fixed + along cos u + across sin u."""
@@ -96,7 +92,9 @@ def _condition(statements: Sequence[Statement], measure: Measure, slope: Slope) 
     moved = sorted(value.free_symbols & dependent.keys(), key=lambda s: s.name)
     if not moved or size.free_symbols & dependent.keys():
         return None
-    parts = tuple(_part(name, dependent[name], angle) for name in moved)
+    parts = tuple(p for name in moved for p in [_part(name, dependent[name], angle)] if p is not None)
+    if len(parts) < len(moved):
+        return None  # the later step depends on the angle in a way that no arc can tell
     gone = _vanishing(statements, measure)
     if all(p.along.xreplace(gone) == 0 and p.across.xreplace(gone) == 0 for p in parts):
         return None  # where the angle is free it no longer moves them
@@ -126,10 +124,10 @@ def _squares(value: sp.Expr, dependent: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
     return value.replace(lambda n: isinstance(n, sp.Pow) and n.base in roots and n.exp == 2, lambda n: roots[n.base])
 
 
-def _part(name: sp.Symbol, value: sp.Expr, angle: sp.Symbol) -> _Part:
+def _part(name: sp.Symbol, value: sp.Expr, angle: sp.Symbol) -> _Part | None:
     linear = linear_coefficients(sp.expand(value), (cosine(angle), sine(angle)))
     if linear is None:
-        raise Unreachable(f"{angle.name} can be free, and {name.name} depends on it in a way that no arc can tell")
+        return None
     (along, across), fixed = linear
     return _Part(name, fixed, along, across)
 

@@ -94,7 +94,7 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     """The closure of a commanded pose."""
     if mechanism.chain is None:
         return _stated_closure(mechanism, {})
-    if is_spatial(mechanism.chain):
+    if is_spatial(mechanism.chain) and mechanism.task.turning is not Turning.ABOUT_Z:
         return _spatial_closure(mechanism, mechanism.chain, mechanism.joints)
     pose = pose_of(mechanism.chain)
     closure = _position_closure(mechanism, pose.position)

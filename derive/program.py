@@ -72,6 +72,7 @@ class Root(sp.Function):
     """root(x) = sqrt(max(0, x)): total."""
 
     nargs = 1
+    is_nonnegative = True
 
 
 class Atan2(sp.Function):
@@ -84,6 +85,7 @@ class Select(sp.Function):
     """select(condition, a, b): a where the condition holds, else b; both are evaluated."""
 
     nargs = 3
+    is_real = True
 
     @classmethod
     def eval(cls, condition: Boolean, first: sp.Expr, second: sp.Expr) -> sp.Expr | None:

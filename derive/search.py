@@ -74,7 +74,7 @@ def search_loop(trial: Trial, start: sp.Expr, crossing: sp.Symbol, idle: sp.Basi
         start=tuple(initial.get(name, _NO) for name in _STATE),
         step=(*wanted, *moves),
         following=following,
-        done=sp.Or(idle, sp.Gt(ACCEPTED, _HALF), sp.Gt(real("radius"), sp.pi + STEP / 2)),
+        done=sp.Or(idle, sp.Gt(ACCEPTED, _HALF), sp.Gt(real("radius"), sp.pi + STEP + STEP / 2)),
         limit=_LIMIT,
         otherwise=Status.UNREACHABLE,
         note="search along the joint, from its reference outwards",

@@ -86,13 +86,16 @@ def _next(
             return problem, binding, sums
     tiers = TIERS[:-1] if problem.is_overdetermined else TIERS
     found = _best(candidate for tier in tiers for candidate in [_candidates(problem, tier(problem))])
-    if found is not None:
+    if found is not None and found.rule != "trigonometric":
         return problem, found, sums
     for total in candidate_sums(problem, arguments):
         trial = substitute(problem, total)
-        found = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in tiers)
-        if found is not None:
-            return trial, found, (*sums, total)
+        wanted = tiers if found is None else tiers[:1]  # half the digits of a cosine alone: rather both functions of a sum
+        better = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in wanted)
+        if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
+            return trial, better, (*sums, total)
+    if found is not None:
+        return problem, found, sums
     raise Unsolved(_message(problem))
 
 

@@ -74,7 +74,12 @@ def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> t
         factors, target = _behind_the_wrist(chain, sp.Matrix(point), commanded, unknowns)
     first = next(i for i, f in enumerate(factors) if f.amount.free_symbols & {*unknowns.angles, *unknowns.lengths})
     whole, behind = _equations(factors, -1, target, unknowns), _equations(factors, first, target, unknowns)
-    return behind if any(len(unknowns.of(e.expression)) == 1 for e in behind) else whole
+    return behind if _alone(behind, unknowns) > _alone(whole, unknowns) else whole
+
+
+def _alone(equations: Sequence[Equation], unknowns: Unknowns) -> int:
+    """How many equations leave some unknown alone."""
+    return sum(len(unknowns.of(e.expression)) == 1 for e in equations)
 
 
 def _behind_the_wrist(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from derive.kinematics import Freedom, Kinematics
+from derive.mechanism import Turning
 
 
 def overview(kinematics: Sequence[Kinematics]) -> Iterator[dict[str, str]]:
@@ -14,7 +15,7 @@ def overview(kinematics: Sequence[Kinematics]) -> Iterator[dict[str, str]]:
         yield {
             "path": f"{mechanism.family}/{mechanism.block_name}",
             "block": mechanism.block_name,
-            "axes": " ".join(joint.name for joint in mechanism.joints),
+            "axes": " ".join(joint.name for joint in mechanism.joints) or "none",
             "tools": _tools(one),
             "summary": mechanism.summary,
         }
@@ -22,6 +23,9 @@ def overview(kinematics: Sequence[Kinematics]) -> Iterator[dict[str, str]]:
 
 def _tools(kinematics: Kinematics) -> str:
     """Which offsets SMC_GroupSetTool takes: the flange's orientation must be known where the offset is removed."""
+    if kinematics.mechanism.is_orientation:
+        return "with a position block"
     if kinematics.projection is not None or kinematics.freedom is Freedom.ZERO:
         return "any"
-    return "along the axis it turns about" if kinematics.freedom is Freedom.ONE else "none"
+    turns_about_one = kinematics.freedom is Freedom.ONE or kinematics.mechanism.task.turning is Turning.DIRECTION
+    return "along the axis it turns about" if turns_about_one else "none"

@@ -29,12 +29,24 @@ def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: 
     slope = Slope(sigma, a * sine(angle) - b * cosine(angle), scale)
     note = f"{angle.name}: aimed by the {equation.label} equation"
     if e == 0:
+        one_way = _only_way(problem, slope.value)
+        way = sigma if one_way is None else one_way
         known = direction(
-            problem, angle, along=-sigma * across, across=sigma * along, measure=distance, note=note, is_length=True
+            problem, angle, along=-way * across, across=way * along, measure=distance, note=note, is_length=True
         )
-        return Binding("lateral", (angle,), (*naming.lets, *known), slope, Measure(angle, distance, problem.scale))
+        measure = Measure(angle, distance, problem.scale)
+        return Binding("lateral", (angle,), (*naming.lets, *known), slope if one_way is None else None, measure)
     beside = naming.named(e, f"beside_{angle.name}", "how far beside the arm the point is")
     return _beside(problem, angle, naming, (along, across, beside, distance), slope, note)
+
+
+def _only_way(problem: Problem, slope: sp.Expr) -> sp.Expr | None:
+    """The sign of the slope, where an equation says that it is, or is opposite to, a length that is positive."""
+    for equation in problem.equations:
+        for sign in (sp.Integer(1), sp.Integer(-1)):
+            if problem.reduce(equation.expression - sign * slope) in problem.positive:
+                return sign * -1
+    return None
 
 
 def _beside(
