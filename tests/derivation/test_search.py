@@ -32,7 +32,8 @@ def test_the_nearest_root_of_the_wanted_slope(start: float, crossing: float) -> 
     assert status is Status.OK
     # sin 3t vanishes at k pi / 3; it rises for even k
     candidates = [k * np.pi / 3 for k in range(-12, 13) if (k % 2 == 0) == (crossing > 0)]
-    assert found == pytest.approx(min(candidates, key=lambda c: abs(c - start)), abs=1e-13)
+    assert min(abs(c - found) for c in candidates) < 1e-13
+    assert abs(found - start) == pytest.approx(min(abs(c - start) for c in candidates), abs=1e-13)
 
 
 def test_a_root_at_the_start() -> None:
