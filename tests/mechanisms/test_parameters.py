@@ -9,7 +9,7 @@ import softkin
 from softkin import KinematicsError, Status
 
 from derive.mechanism import Mechanism, Role
-from tests.mechanisms.machines import Machine
+from tests.mechanisms.machines import LENGTHS, Machine
 
 
 def refused(machine: Machine, name: str, **given: object) -> None:
@@ -42,6 +42,9 @@ def test_ranges(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
         if parameter.low_open:
             refused(machine, parameter.name, **{parameter.name: parameter.low})
             machine.changed(**{parameter.name: parameter.low + step})
+        elif parameter.role is Role.SIGNED_LENGTH:
+            refused(machine, parameter.name, **{parameter.name: 0.0})
+            machine.changed(**{parameter.name: parameter.low})
         else:
             machine.changed(**{parameter.name: parameter.low})
 
@@ -64,7 +67,7 @@ def test_ranges_of_the_vendor() -> None:
 
 def test_lengths_must_be_given_and_nothing_else_need_be(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     robot_class = type(machines[0].robot)
-    lengths = {p.name: p.nominal for p in mechanism.parameters if p.role is Role.LENGTH}
+    lengths = {p.name: p.nominal for p in mechanism.parameters if p.role in LENGTHS}
     robot_class(**lengths)
     for name in lengths:
         with pytest.raises(TypeError, match=name):
@@ -82,7 +85,7 @@ def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Mac
         assert robot.parameters[parameter.name] == expected
         own = next((p for p in mechanism.parameters if p.name == parameter.name), None)
         usual = {"check_limits": 1.0}.get(parameter.name, 0.0)
-        assert parameter.default == (usual if own is None else {Role.LENGTH: None, Role.SIGN: 1.0}.get(own.role, 0.0))
+        assert parameter.default == (usual if own is None else {**dict.fromkeys(LENGTHS), Role.SIGN: 1.0}.get(own.role, 0.0))
 
 
 def test_limits_must_be_in_order(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
