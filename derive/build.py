@@ -15,6 +15,7 @@ from derive.differential import Factor, jacobian_program, jacobian_rows, singula
 from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
 from derive.forward import (
     Forward,
+    at_point,
     derivation_at_axes,
     forward_program,
     orientation_program,
@@ -207,7 +208,8 @@ def _offset_configuration(
 ) -> Program:
     margins = margin_lets(mechanism, assignments)
     outputs = [Output(m.name.name, m.name) for m in margins]
-    draft = assemble("offset_configuration", (*derivation_at_axes(mechanism, inverse, forward), *margins), outputs)
+    known = derivation_at_axes(mechanism, inverse, at_point(forward))
+    draft = assemble("offset_configuration", (*known, *margins), outputs)
     points = [s for s in draft.inputs if s.name.startswith("point_")]
     return assemble("offset_configuration", (*finite(points), *draft.body), draft.outputs)
 

@@ -10,6 +10,7 @@ from derive.algebra import cosine, sine
 from derive.closure import (
     COORDINATES,
     HEADING,
+    OFFSET,
     all_angles,
     angles_of,
     fixed_angle_lets,
@@ -121,6 +122,17 @@ def _domains(mechanism: Mechanism) -> tuple[Require, ...]:
         inside = sp.And(sp.Ge(value, low - LIMIT * (1 + abs(low))), sp.Le(value, high + LIMIT * (1 + abs(high))))
         checks.append(Require(inside, Status.IMPOSSIBLE, f"{joint.name} where the machine has no pose"))
     return tuple(checks)
+
+
+def at_point(forward: Forward) -> Forward:
+    """The same for a point off the flange: x, y and z are where that point is."""
+    flange = {real(c): real(f"flange_{c}") for c in COORDINATES}
+    statements: list[Statement] = [rewritten(s, lambda e: e.xreplace(flange)) for s in forward.statements]
+    statements = [replace(s, name=flange.get(s.name, s.name)) if isinstance(s, Let) else s for s in statements]
+    behind = [sp.sympify(p).xreplace(flange) for p in forward.position]
+    arm = sp.Matrix(3, 3, forward.rotation) * sp.Matrix(OFFSET)
+    point = tuple(Let(real(c), p + a) for c, p, a in zip(COORDINATES, behind, arm, strict=True))
+    return replace(forward, statements=(*statements, *point), position=tuple(p.name for p in point))
 
 
 def forward_program(mechanism: Mechanism, forward: Forward, margins: tuple[Let, ...]) -> Program:

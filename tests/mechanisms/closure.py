@@ -35,6 +35,7 @@ class Closure:
         self.task = ["xyz".index(c) for c in mechanism.task.position]
         self.follows_turn = mechanism.task.turning is Turning.ABOUT_Z
         self._equations: list[sp.Expr] = list(mechanism.closure)
+        self.follows_rotation = mechanism.task.turning is not Turning.NONE
 
     def joints(self, axes: Array) -> Array:
         """Joint values in radians and lengths: motor = axis - offset, joint = motor + coupling."""
@@ -67,7 +68,7 @@ class Closure:
         """Position and rotation at the end of a chain."""
         assert self.mechanism.chain is not None
         factors = self.mechanism.chain.factors
-        amounts = self._at_joints([f.amount for f in factors], joints)
+        amounts = self.at_joints([f.amount for f in factors], joints)
         product = np.tile(np.eye(4, dtype=amounts.dtype), (len(joints), 1, 1))
         for k, factor in enumerate(factors):
             product = product @ _elementary(factor.motion, factor.axis, amounts[:, k])
@@ -89,7 +90,7 @@ class Closure:
             return self._stated(joints, positions)
         position, rotation = self.frames(joints)
         lengths = (position - positions)[:, self.task]
-        return np.hstack([lengths, (rotation - rotations).reshape(-1, 9)]) if self.follows_turn else lengths
+        return np.hstack([lengths, (rotation - rotations).reshape(-1, 9)]) if self.follows_rotation else lengths
 
     def jacobian(self, axes: Array, positions: Array) -> Array:
         """Rows of the task by axes, per radian for an axis in degrees."""
@@ -99,38 +100,38 @@ class Closure:
             by_pose = derivative(lambda p: self._stated(joints, p), positions)[:, :, self.task]
             return -np.linalg.solve(by_pose, by_axes) / self.units
         by_position = derivative(lambda a: self.frames(self.joints(a))[0], axes)[:, self.task]
-        if not self.follows_turn:
+        if not self.follows_rotation:
             return by_position / self.units
         spin = derivative(lambda a: self.frames(self.joints(a))[1].reshape(-1, 9), axes)
         rotations = self.frames(self.joints(axes))[1]
-        spins = spin.reshape(-1, 3, 3, axes.shape[1])
-        about_z = np.einsum("nka,nk->na", spins[:, 1], rotations[:, 0])  # row y of dR times row x of R
-        return np.concatenate([by_position, about_z[:, None]], axis=1) / self.units
+        spins = np.einsum("nika,njk->nija", spin.reshape(-1, 3, 3, axes.shape[1]), rotations)  # dR times R transposed
+        twist = np.stack([spins[:, 2, 1], spins[:, 0, 2], spins[:, 1, 0]], axis=1)
+        return np.concatenate([by_position, twist[:, 2:] if self.follows_turn else twist], axis=1) / self.units
 
     def indicators(self, joints: Array) -> Array:
         """The indicator of every branch, positive where its byte is 1."""
-        return self._at_joints([b.signs[0] * b.indicator for b in self.mechanism.branches], joints)
+        return self.at_joints([b.signs[0] * b.indicator for b in self.mechanism.branches], joints)
 
     def positive(self, joints: Array) -> Array:
         """The quantities whose negative mirror the machine does not have."""
-        return self._at_joints(list(self.mechanism.positive), joints)
+        return self.at_joints(list(self.mechanism.positive), joints)
 
     def limited(self, joints: Array) -> Array:
         """The quantities with limits of their own, in degrees and lengths."""
-        values = self._at_joints([q.value for q in self.mechanism.limited], joints)
+        values = self.at_joints([q.value for q in self.mechanism.limited], joints)
         return values / np.array([ONE_DEGREE if q.is_angle else 1.0 for q in self.mechanism.limited])
 
     def _stated(self, joints: Array, positions: Array) -> Array:
         symbols = [*(j.symbol for j in self.mechanism.joints), *POSITION]
         return self._evaluate(self._equations, symbols, np.hstack([joints, positions]))
 
-    def _at_joints(self, expressions: Sequence[sp.Expr], joints: Array) -> Array:
+    def at_joints(self, expressions: Sequence[sp.Expr], joints: Array) -> Array:
+        """Expressions in joint values, one a column."""
         return self._evaluate(expressions, [j.symbol for j in self.mechanism.joints], joints)
 
     def _evaluate(self, expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol], values: Array) -> Array:
         names = (*symbols, *(p.symbol for p in self.mechanism.parameters), DEGREE)
-        functions = [_compiled(sp.sympify(e), names) for e in expressions]
-        columns = [f(*values.T, *self.constants, ONE_DEGREE) for f in functions]
+        columns = _compiled(tuple(expressions), names)(*values.T, *self.constants, ONE_DEGREE)
         found = [np.broadcast_to(c, (len(values),)) for c in columns]
         return np.stack(found, axis=1) if found else np.zeros((len(values), 0))
 
@@ -146,8 +147,8 @@ def derivative(function: Callable[[Array], Array], at: Array) -> Array:
 
 
 @cache
-def _compiled(expression: sp.Expr, names: tuple[sp.Symbol, ...]) -> Callable[..., Array]:
-    return sp.lambdify(names, expression, modules="numpy")
+def _compiled(expressions: tuple[sp.Expr, ...], names: tuple[sp.Symbol, ...]) -> Callable[..., list[Array]]:
+    return sp.lambdify(names, list(expressions), modules="numpy")
 
 
 def _elementary(motion: Motion, axis: int, amount: Array) -> Array:

@@ -1,7 +1,7 @@
 """Forward kinematics written by hand, as the literature prints it: independent of the descriptions.
 
 Each function takes parameters and motor values (axis value less offset, in radians and lengths), and gives
-x, y, z and the turn of the flange about z.
+x, y, z and the turn of the flange about z, or its whole rotation, entry by entry.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from tests.mechanisms.closure import Array
 
-Pose = tuple[Array, Array, Array, Array]
+Pose = tuple[Array, Array, Array, Array | tuple[tuple[Array, ...], ...]]
 Formula = Callable[[Mapping[str, float], Sequence[Array]], Pose]
 TURN = 2 * np.pi
 
@@ -86,11 +86,69 @@ def _cutter(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return q[0], q[1], q[2] if len(q) > 3 else 0 * q[0], p["direction_r"] * q[-1]
 
 
+def _three_parallel(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """Entry by entry, as papers on these arms print it."""
+    (c1, c5, c6), (s1, s5, s6) = ([f(q[i]) for i in (0, 4, 5)] for f in (np.cos, np.sin))
+    sums = (q[1], q[1] + q[2], q[1] + q[2] + q[3])
+    (c2, c23, c), (s2, s23, s) = ([f(v) for v in sums] for f in (np.cos, np.sin))
+    across = -(p["d4"] + p["d6"] * c5)
+    along = p["a2"] * c2 + p["a3"] * c23 + p["d5"] * s - p["d6"] * s5 * c
+    z = p["d1"] + p["a2"] * s2 + p["a3"] * s23 - p["d5"] * c - p["d6"] * s5 * s
+    rotation = (
+        (c6 * (s1 * s5 + c1 * c5 * c) - c1 * s6 * s, -s6 * (s1 * s5 + c1 * c5 * c) - c1 * c6 * s, c5 * s1 - c1 * s5 * c),
+        (c6 * (s1 * c5 * c - c1 * s5) - s1 * s6 * s, s6 * (c1 * s5 - s1 * c5 * c) - s1 * c6 * s, -c1 * c5 - s1 * s5 * c),
+        (c5 * c6 * s + s6 * c, c6 * c - c5 * s6 * s, -s5 * s),
+    )
+    return along * c1 - across * s1, along * s1 + across * c1, z, rotation
+
+
+def _arm(p: Mapping[str, float], q: Sequence[Array]) -> tuple[Array, Array]:
+    """An articulated arm in its plane: the wrist centre, and the frame of the forearm, rows of vectors."""
+    o, one = 0 * q[0], 0 * q[0] + 1
+    radial, sideways = np.array([np.cos(q[0]), np.sin(q[0]), o]), np.array([np.sin(q[0]), -np.cos(q[0]), o])
+    up = np.array([o, o, one])
+    lean, tilt = q[1], q[1] + q[2]
+    out, high = -np.sin(tilt) * radial + np.cos(tilt) * up, np.cos(tilt) * radial + np.sin(tilt) * up
+    shoulder = p["a1"] * radial + p["d1"] * up
+    wrist = shoulder + p["a2"] * (np.cos(lean) * up - np.sin(lean) * radial) + p["d3"] * sideways + p["a3"] * out + p["d4"] * high
+    return wrist, np.array([out, sideways, high])
+
+
+def _pos_rrr(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    wrist, frame = _arm(p, q)
+    return *wrist, tuple(tuple(frame[j, i] for j in range(3)) for i in range(3))
+
+
+def _articulated(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    wrist, (x, y, z) = _arm(p, q)
+    c4, s4, c5, s5, c6, s6 = (f(q[i]) for i in (3, 4, 5) for f in (np.cos, np.sin))
+    towards = -c4 * s5 * x - s4 * s5 * y + c5 * z
+    first = (c4 * c5 * c6 - s4 * s6) * x + (s4 * c5 * c6 + c4 * s6) * y + s5 * c6 * z
+    second = -(c4 * c5 * s6 + s4 * c6) * x + (c4 * c6 - s4 * c5 * s6) * y - s5 * s6 * z
+    return *(wrist + p["d6"] * towards), tuple(zip(first, second, towards, strict=True))
+
+
+def _gantry_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """Turns about y, the turned x and the flange's z, multiplied out."""
+    b, a, c = q[3:]
+    (ca, cb, cc), (sa, sb, sc) = ([f(v) for v in (a, b, c)] for f in (np.cos, np.sin))
+    rotation = (
+        (cb * cc + sb * sa * sc, sb * sa * cc - cb * sc, sb * ca),
+        (ca * sc, ca * cc, -sa),
+        (cb * sa * sc - sb * cc, sb * sc + cb * sa * cc, cb * ca),
+    )
+    flange = [p[f"flange_{w}"] for w in "xyz"]
+    return *(q[i] + sum(r * o for r, o in zip(rotation[i], flange, strict=True)) for i in range(3)), rotation
+
+
 CARTESIAN = _carriage((1, 0), (0, 1))
 H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
 H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
 T_GANTRY = _carriage((0.5, 0.5), (-0.5, 0.5))
 FORMULAS: dict[str, Formula] = {
+    "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
+    "Kin_Ac6_ThreeParallel": _three_parallel,
+    "Kin_ArticulatedRobot_6DOF": _articulated,
     "Kin_Crane": _crane,
     "Kin_Gantry2": CARTESIAN,
     "Kin_Gantry3": CARTESIAN,
@@ -102,6 +160,7 @@ FORMULAS: dict[str, Formula] = {
     "Kin_PCC": _pcc,
     "Kin_Polar": _polar,
     "Kin_Polar_Z": _polar,
+    "Kin_Pos_RRR": _pos_rrr,
     "Kin_SCCC": _sccc,
     "Kin_Scara2_Z": _scara3("arm"),
     "Kin_Scara3_CCZ": _scara3("link"),

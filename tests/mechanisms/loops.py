@@ -103,6 +103,11 @@ class LoopMachine(Machine):
 
     closure: LoopClosure
 
+    @property
+    def branches_meet_together(self) -> bool:
+        """Not of a loop: a working mode may be on the side where the machine is not assembled."""
+        return False
+
     def draw(self, count: int, rng: Generator) -> Array:
         """Random axis values of regular poses, over several turns where an axis has them."""
         chosen = self.pool[rng.integers(len(self.pool), size=count)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 import softkin
@@ -12,6 +12,7 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from derive.catalogue import catalogue
+from derive.frames import Motion
 from derive.mechanism import Joint, Mechanism, Parameter, Role
 from tests.mechanisms.closure import Array, Closure
 
@@ -25,7 +26,10 @@ TURNS = 1000.0
 CLIMBING_TURNS = 720.0
 """The same of an axis that carries another one along: it is limited."""
 REGULAR = 0.05
-"""Branch indicators and positive quantities (lengths: per reach) at a regular pose are at least this."""
+"""Branch indicators (those that are lengths: per their largest) and positive quantities (per reach) are at least this."""
+UNEQUAL = (320.0, 80.0, 20.0)
+LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
+"""What must be given; a distance need not be."""
 
 
 @dataclass(frozen=True)
@@ -39,21 +43,58 @@ class Machine:
     closure: Closure
     reach: float
 
-    def draw(self, count: int, rng: Generator) -> Array:
-        """Random axis values of regular poses, over several turns where an axis has them."""
+    def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
+        """Random axis values of regular poses, over several turns where an axis has them and `farthest` (degrees) allows."""
         chosen: list[Array] = []
         while sum(map(len, chosen)) < count:
-            axes = self._any(4 * count, rng)
+            axes = self._any(4 * count, rng, farthest)
             chosen.append(axes[self.is_regular(axes)])
         return np.concatenate(chosen)[:count]
+
+    def sample(self, count: int) -> Array:
+        """The same random axis values every time, singular or not."""
+        return self._any(count, np.random.default_rng(0))
 
     def is_regular(self, axes: Array) -> Array:
         """Whether axis values are away from every singularity."""
         joints = self.closure.joints(axes)
         lengths = {j.symbol: self.reach for j in self.mechanism.joints if not j.is_angle}
         scales = np.array([lengths.get(p, 1.0) for p in self.mechanism.positive])
-        away = np.all(np.abs(self.closure.indicators(joints)) > REGULAR, axis=1)
+        away = np.all(np.abs(self.closure.indicators(joints)) > REGULAR * self.largest, axis=1)
         return away & np.all(self.closure.positive(joints) > REGULAR * scales, axis=1)
+
+    @cached_property
+    def largest(self) -> Array:
+        """How large the indicator of every branch can be: 1, or a length that random joint values tell."""
+        lengths = {p.symbol for p in self.mechanism.parameters if p.role in (*LENGTHS, Role.DISTANCE)}
+        lengths |= {j.symbol for j in self.mechanism.joints if not j.is_angle}
+        is_length = np.array([bool(b.indicator.free_symbols & lengths) for b in self.mechanism.branches], dtype=bool)
+        joints = self.closure.joints(self.sample(2000))
+        return np.where(is_length, np.abs(self.closure.indicators(joints)).max(axis=0), 1.0)
+
+    @property
+    def has_a_reach(self) -> bool:
+        """Whether some positions are out of reach: not where slides move every coordinate, or where there are no branches."""
+        return self.robot.BRANCHES > 0 and int((~self.closure.angles).sum()) < len(self.closure.task)
+
+    @property
+    def branches_meet_together(self) -> bool:
+        """Whether every branch answers where one does: two roots of one equation do, several equations each have a reach."""
+        return self.robot.BRANCHES <= 1
+
+    @property
+    def is_spatial(self) -> bool:
+        """Whether a chain turns about more than one direction: no plane, no heading, no outer circle."""
+        chain = self.mechanism.chain
+        return chain is not None and len({f.axis for f in chain.factors if f.motion is Motion.TURN}) > 1
+
+    def answers(self, statuses: Array) -> Array:
+        """Which rows a slot answers; a machine whose branches each have a reach may refuse some."""
+        answered = statuses == softkin.Status.OK
+        if self.branches_meet_together:
+            assert answered.all()
+        assert (answered | (statuses == softkin.Status.UNREACHABLE)).all()
+        return answered
 
     def error(self, axes: Array, positions: Array, rotations: Array) -> Array:
         """The largest part of the closure's residual in every row, lengths over the size of the motion."""
@@ -98,16 +139,16 @@ class Machine:
         """The same robot with other parameters."""
         return type(self.robot)(**{**self.given, **parameters})
 
-    def _any(self, count: int, rng: Generator) -> Array:
+    def _any(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
         columns = []
         for joint, offset in zip(self.mechanism.joints, self.closure.offsets, strict=True):
-            low, high = self._range(joint)
+            low, high = self._range(joint, farthest)
             columns.append(rng.uniform(low, high, count) + (0.0 if joint.multi_turn else offset))
         return np.stack(columns, axis=1)
 
-    def _range(self, joint: Joint) -> tuple[float, float]:
+    def _range(self, joint: Joint, farthest: float) -> tuple[float, float]:
         if joint.multi_turn:
-            size = CLIMBING_TURNS if joint.pitch != 0 else TURNS
+            size = min(farthest, CLIMBING_TURNS if joint.pitch != 0 else TURNS)
         else:
             size = 180.0 if joint.is_angle else self.reach
         low, high = joint.domain or (-size, size)
@@ -119,12 +160,12 @@ def machines_of(mechanism: Mechanism) -> tuple[Machine, ...]:
     """Plain, nominal, with equal and with very unequal lengths, and random machines with everything."""
     rng = np.random.default_rng(8)
     nominal = {p.name: p.nominal for p in mechanism.parameters}
-    lengths = [p.name for p in mechanism.parameters if p.role is Role.LENGTH]
+    lengths = [p.name for p in mechanism.parameters if p.role in LENGTHS]
     found = {
         "plain": {name: nominal[name] for name in lengths},
         "nominal": nominal,
-        "equal": nominal | dict.fromkeys(lengths, 250.0),
-        "unequal": nominal | dict(zip(lengths, (320.0, 80.0, 20.0), strict=False)),
+        "equal": nominal | {name: np.copysign(250.0, nominal[name]) for name in lengths},
+        "unequal": nominal | {name: np.copysign(v, nominal[name]) for name, v in zip(lengths, UNEQUAL, strict=False)},
     }
     found |= {f"random {k}": _random(mechanism, rng) for k in (1, 2, 3)}
     return tuple(machine(mechanism, label, given) for label, given in found.items())
@@ -133,7 +174,7 @@ def machines_of(mechanism: Mechanism) -> tuple[Machine, ...]:
 def machine(mechanism: Mechanism, label: str, given: Mapping[str, float]) -> Machine:
     """One machine; what is not given has its default."""
     robot = softkin.catalogue()[mechanism.name](**given)
-    lengths = [abs(robot.parameters[p.name]) for p in mechanism.parameters if p.role in (Role.LENGTH, Role.DISTANCE)]
+    lengths = [abs(robot.parameters[p.name]) for p in mechanism.parameters if p.role in (*LENGTHS, Role.DISTANCE)]
     closure = Closure(mechanism, robot.parameters)
     return Machine(label, mechanism, given, robot, closure, sum(lengths) or WITHOUT_LENGTHS)
 
@@ -153,6 +194,8 @@ def _random(mechanism: Mechanism, rng: Generator) -> dict[str, float]:
 
 def _draw(parameter: Parameter, rng: Generator) -> float:
     sizes = {Role.PITCH: 100.0, Role.GEAR: 0.3, Role.COUPLING: 1.5}
+    if parameter.role is Role.SIGNED_LENGTH:
+        return float(parameter.nominal * rng.uniform(0.4, 1.6) * rng.choice((-1, 1)))
     if parameter.role in (Role.LENGTH, Role.DISTANCE):
         return float(parameter.nominal * rng.uniform(0.4, 1.6))
     if parameter.role is Role.FLAG:

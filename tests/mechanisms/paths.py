@@ -5,11 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from tests.mechanisms.closure import Array
-from tests.mechanisms.loci import loci
+from tests.mechanisms.loci import Locus, loci
 from tests.mechanisms.machines import Machine
 
-BEND = (0.3, 2.8)
-"""How far (radians) an elbow bends along the way: it neither stretches nor folds."""
+BEND, BEND_OF_SEVERAL = 0.8, 0.5
+"""How far an elbow bends along the way, as a share of the arc on which it neither stretches nor folds."""
+BENT_A_LITTLE = -0.7
+VENDOR = 60.0
+"""Degrees or lengths that axes start inside of the vendor's ranges."""
+LEAST_WAY = 12.0
+"""Degrees or lengths that every axis can go from the start, either way."""
 
 
 def tour(machine: Machine, steps: int, turns: int = 0) -> Array:
@@ -30,22 +35,32 @@ def tour(machine: Machine, steps: int, turns: int = 0) -> Array:
         else:
             columns.append(machine.reach * 0.4 * swing)
     axes = np.stack(columns, axis=1)
-    bend = np.mean(BEND) + np.ptp(BEND) / 2 * np.sin(6 * np.pi * time) + 2 * np.pi * turns
-    for locus in loci(machine):
-        if locus.branch is not None and locus.target == 0.0:
-            axes = locus.moved(axes, bend)
+    bending = _bending(machine)
+    bend = BEND if len(bending) == 1 else BEND_OF_SEVERAL
+    for k, locus in enumerate(bending):
+        axes = locus.within(axes, bend * np.sin((6 + 2 * k) * np.pi * time), turns)
     return axes
 
 
 def start(machine: Machine) -> Array:
-    """Axis values on the first turn, the elbow bent a little."""
-    axes = machine.draw(4000, np.random.default_rng(12))
-    turning = [i for i, j in enumerate(machine.mechanism.joints) if j.multi_turn]
-    axes = axes[np.abs(axes[:, turning]).max(axis=1, initial=0.0) < 100.0]
-    for locus in loci(machine):
-        if locus.branch is not None and locus.target == 0.0:
-            axes = locus.moved(axes, 0.5)
-    return axes[0]
+    """Axis values on the first turn, every elbow bent a little, from which every axis can go some way."""
+    axes = machine.draw(1000, np.random.default_rng(12), farthest=100.0)
+    for i, joint in enumerate(machine.mechanism.joints):
+        low, high = joint.limit_range or (-1e9, 1e9)
+        axes = axes[(axes[:, i] > low + VENDOR) & (axes[:, i] < high - VENDOR)]
+    for locus in _bending(machine):
+        axes = locus.within(axes[locus.exists(axes)], BENT_A_LITTLE)
+    free = np.ones(len(axes), dtype=bool)
+    for i in range(axes.shape[1]):
+        for shift in np.linspace(-LEAST_WAY, LEAST_WAY, 5):
+            free &= machine.is_regular(axes + shift * np.eye(axes.shape[1])[i])
+    return axes[free][0]
+
+
+def _bending(machine: Machine) -> list[Locus]:
+    """One locus a branch, those that the fewest joints decide first: what is set later leaves them alone."""
+    first = [locus for locus in loci(machine) if locus.branch is not None and not locus.second]
+    return sorted(first, key=lambda locus: locus.joints)
 
 
 def straight(machine: Machine, axis: int, steps: int, far: float = 400.0) -> Array:

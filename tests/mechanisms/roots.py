@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from tests.mechanisms.closure import Array, derivative
+from tests.mechanisms.closure import STEP, Array
 from tests.mechanisms.machines import Machine
 
 STARTS = 32
-"""Newton's method starts from so many places, twice as many for every branch after the first."""
+"""Newton's method starts from so many places."""
+MANY_STARTS = 120
+"""Of a machine with several branches, and twice as many for every branch after the third."""
 STEPS = 25
 SAME = 1e-6
 """Solutions nearer than this (radians, or per reach) are one."""
+SOLVED = 1e-11
 
 
 def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]:
@@ -19,16 +22,20 @@ def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]
     closure = machine.closure
     rng = np.random.default_rng(77)
     scale = np.where(closure.angles, 1.0, machine.reach)
-    starts = STARTS * 2 ** max(0, len(machine.mechanism.branches) - 1)
+    starts = STARTS if machine.branches_meet_together else max(MANY_STARTS, STARTS * 2 ** (len(machine.mechanism.branches) - 1))
     joints = rng.uniform(-1, 1, (starts, len(scale))) * np.where(closure.angles, np.pi, 2 * machine.reach)
-    joints = _newton(machine, joints, position, rotation, STEPS)
-    joints = principal(machine, joints, position, rotation)
+    joints = principal(machine, solved_from(machine, joints, position, rotation), position, rotation)
     found: list[Array] = []
-    solved = joints[_solved(machine, joints, position, rotation)]
-    for row in solved[machine.is_own(solved, position)]:
+    for row in joints[machine.is_own(joints, position)]:
         if not any(np.abs(distance(machine, row, other)).max() < SAME for other in found):
             found.append(row)
     return found
+
+
+def solved_from(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
+    """The solutions that Newton's method finds from these starts."""
+    joints = _newton(machine, joints, position, rotation, STEPS)
+    return joints[_solved(machine, joints, position, rotation)]
 
 
 def principal(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
@@ -47,24 +54,28 @@ def distance(machine: Machine, first: Array, second: Array) -> Array:
 
 
 def _newton(machine: Machine, joints: Array, position: Array, rotation: Array, steps: int) -> Array:
-    count = len(joints)
-    positions, rotations = np.tile(position, (count, 1)), np.tile(rotation, (count, 1, 1))
-
-    def equations(q: Array) -> Array:
-        return machine.closure.equations(q, positions, rotations)
-
+    count, width = joints.shape
     for _ in range(steps):
-        slopes = derivative(equations, joints)
+        shifts = np.vstack([np.zeros(width), STEP * np.eye(width)])
+        shifted = (joints[:, None] + 1j * shifts).reshape(-1, width)
+        equations = _equations(machine, shifted, position, rotation)
+        values = equations.reshape(count, width + 1, equations.shape[1])
+        slopes = np.moveaxis(values[:, 1:].imag / STEP, 1, 2)
         normal = slopes.transpose(0, 2, 1) @ slopes
-        damped = normal + 1e-12 * np.eye(joints.shape[1]) * (1.0 + np.trace(normal, axis1=1, axis2=2))[:, None, None]
-        step = np.linalg.solve(damped, slopes.transpose(0, 2, 1) @ equations(joints)[:, :, None])
+        damped = normal + 1e-12 * np.eye(width) * (1.0 + np.trace(normal, axis1=1, axis2=2))[:, None, None]
+        step = np.linalg.solve(damped, slopes.transpose(0, 2, 1) @ values[:, 0].real[:, :, None])
         joints = joints - step[:, :, 0]
     return joints
 
 
+def _equations(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
+    """The commanded part of the closure at one pose, lengths per reach."""
+    count, lengths = len(joints), len(machine.mechanism.task.position)
+    found = machine.closure.equations(joints, np.tile(position, (count, 1)), np.tile(rotation, (count, 1, 1)))
+    return np.hstack([found[:, :lengths] / machine.reach, found[:, lengths:]])
+
+
 def _solved(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
-    count = len(joints)
     with np.errstate(invalid="ignore"):
-        residual = np.abs(machine.closure.equations(joints, np.tile(position, (count, 1)), np.tile(rotation, (count, 1, 1))))
-        small = residual.max(axis=1) < 1e-9 * machine.reach
+        small = np.abs(_equations(machine, joints, position, rotation)).max(axis=1) < SOLVED
         return small & np.all(machine.closure.positive(joints) > 0, axis=1)

@@ -23,14 +23,19 @@ def squared(machine: Machine, axes: Array, references: Array) -> Array:
 
 
 def by_slot(machine: Machine, frames: tuple[Array, Array], references: Array) -> list[Array]:
-    """The axes of every slot with all periods open; not a number where a loop cannot be closed so."""
+    """The axes of every slot with all periods open; not a number where a slot does not answer."""
     robot = machine.changed(check_limits=False)
     found = []
     for slot in slots(machine):
         axes, statuses = robot.inverse_batch(*frames, slot + (0,) * len(robot.PERIOD_AXES), references)
-        assert (statuses == Status.OK).all() or machine.mechanism.rods
+        assert np.isnan(axes[~machine.answers(statuses)]).all()
         found.append(axes)
     return found
+
+
+def distances_of(machine: Machine, answers: list[Array], references: Array) -> Array:
+    """Of every slot from the reference; a slot that does not answer is infinitely far."""
+    return np.nan_to_num(np.stack([squared(machine, a, references) for a in answers]), nan=np.inf)
 
 
 def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
@@ -40,7 +45,7 @@ def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
         frames = machine.closure.poses(axes)
         references = np.random.default_rng(2).uniform(-400, 400, axes.shape)
         answers = by_slot(machine, frames, references)
-        distances = np.nan_to_num([squared(machine, a, references) for a in answers], nan=np.inf)
+        distances = distances_of(machine, answers, references)
         nearest = np.choose(distances.argmin(axis=0)[:, None], answers)
         for byte in (0, 3):
             configuration = (byte,) * robot.BRANCHES + (0,) * len(robot.PERIOD_AXES)
@@ -63,29 +68,32 @@ def test_a_tie_goes_to_the_lowest_slot(machines: tuple[Machine, ...]) -> None:
         axes = machine.draw(200, np.random.default_rng(3))
         frames = machine.closure.poses(axes)
         answers = by_slot(machine, frames, axes)
-        seen = np.zeros(len(axes), dtype=bool)
-        for (low, first), (high, second) in combinations(enumerate(answers), 2):
+        seen = 0
+        pairs = list(combinations(enumerate(answers), 2))
+        if not machine.mechanism.rods:
+            pairs = pairs[: len(answers) - 1]  # the first slot with every other one
+        for (low, first), (high, second) in pairs:
             middle = (first + second) / 2
             width = np.sqrt(squared(machine, first, second))
             towards = (second - first) / width[:, None]
             at_middle = by_slot(machine, frames, np.nan_to_num(middle))
             same = (np.abs(at_middle[low] - first).max(axis=1) < 1e-9) & (np.abs(at_middle[high] - second).max(axis=1) < 1e-9)
-            away = np.nan_to_num([squared(machine, a, middle) for a in at_middle], nan=np.inf)
+            away = distances_of(machine, at_middle, middle)
             same &= (away >= away[low] - TIE / 10).all(axis=0) & ((away < away[low] + 10 * TIE).sum(axis=0) == 2)
-            seen |= same
+            seen += same.sum()
             # shifted by s towards the second slot, the squared distances differ by 2 * s * width
             for excess, chosen in ((0.0, first), (0.5 * TIE, first), (3 * TIE, second), (-3 * TIE, first)):
                 references = (middle + towards * (excess / (2 * width))[:, None])[same]
                 found = _automatic(machine, (frames[0][same], frames[1][same]), references)
                 assert np.abs(found - chosen[same]).max(initial=0.0) < 1e-9
-        assert seen.sum() > 20 or len(answers) == 1
+        assert seen > 20 or len(answers) == 1
 
 
-def _automatic(machine: Machine, frames: tuple[Array, Array], references: Array) -> Array:
+def _automatic(machine: Machine, frames: tuple[Array, ...], references: Array) -> Array:
     robot = machine.changed(check_limits=False)
     found, statuses = robot.inverse_batch(*frames, (0,) * len(robot.CONFIGURATION), references)
     assert (statuses == Status.OK).all()
-    for row in range(min(10, len(references))):
+    for row in range(0, len(references), 20):
         scalar = robot.inverse((frames[0][row], frames[1][row]), (0,) * len(robot.CONFIGURATION), references[row])
         assert np.abs(np.subtract(scalar, found[row])).max() < 1e-9
     return found
@@ -98,9 +106,8 @@ def test_an_open_period_is_the_nearest_to_the_reference(machines: tuple[Machine,
         references = np.random.default_rng(5).uniform(-3000, 3000, axes.shape)
         turning = [i for i, j in enumerate(machine.mechanism.joints) if j.multi_turn]
         for found in by_slot(machine, machine.closure.poses(axes), references):
-            solved = ~np.isnan(found).any(axis=1)
-            apart = np.degrees(machine.closure.joints(found) - machine.closure.joints(references))[solved][:, turning]
-            assert np.abs(apart).max(initial=0.0) <= 180.0 + 1e-8
+            apart = np.degrees(machine.closure.joints(found) - machine.closure.joints(references))[:, turning]
+            assert np.nanmax(np.abs(apart), initial=0.0) <= 180.0 + 1e-8
 
 
 def test_where_nothing_is_open_the_reference_has_no_influence(machines: tuple[Machine, ...]) -> None:
@@ -130,6 +137,6 @@ def test_without_a_configuration_branch_1_and_the_nearest_turn(machines: tuple[M
         frames = machine.closure.poses(axes)
         first = by_slot(machine, frames, np.zeros_like(axes))[0]
         assert np.array_equal(robot.inverse_batch(*frames)[0], first, equal_nan=True)
-        for row in np.flatnonzero(~np.isnan(first).any(axis=1))[:5]:
+        for row in np.flatnonzero(np.isfinite(first[:, 0]))[:5]:
             scalar = robot.inverse((frames[0][row], frames[1][row]))
             assert np.abs(np.subtract(scalar, first[row])).max() < 1e-10

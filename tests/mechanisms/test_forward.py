@@ -7,7 +7,7 @@ import pytest
 import softkin
 
 from derive.mechanism import Mechanism
-from tests.mechanisms.closure import ONE_DEGREE
+from tests.mechanisms.closure import ONE_DEGREE, Array
 from tests.mechanisms.hand_written import FORMULAS
 from tests.mechanisms.machines import MECHANISMS, Machine, machines_of
 from tests.mechanisms.refusals import refusal
@@ -60,10 +60,14 @@ def test_forward_is_what_the_literature_prints(name: str) -> None:
         *position, turn = FORMULAS[name](machine.robot.parameters, ((axes - offsets) * units).T)
         positions, rotations, _, _ = machine.robot.forward_batch(axes)
         assert np.abs(positions - np.stack(position, axis=1)).max() < 1e-13 * (machine.reach + np.abs(axes).max())
-        down = -1.0 if machine.robot.parameters.get("flange_down") else 1.0
-        c, s, o = np.cos(turn), np.sin(turn), 0 * turn
-        expected = np.array([[c, -s * down, o], [s, c * down, o], [o, o, o + down]])
+        expected = np.array(turn if isinstance(turn, tuple) else _about_z(turn, machine))
         assert np.abs(rotations - np.moveaxis(expected, 2, 0)).max() < ROUNDING
+
+
+def _about_z(turn: Array, machine: Machine) -> list[list[Array]]:
+    down = -1.0 if machine.robot.parameters.get("flange_down") else 1.0
+    c, s, o = np.cos(turn), np.sin(turn), 0 * turn
+    return [[c, -s * down, o], [s, c * down, o], [o, o, o + down]]
 
 
 def test_what_the_machine_does_not_have_is_no_pose(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:

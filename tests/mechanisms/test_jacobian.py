@@ -6,7 +6,7 @@ import numpy as np
 
 from derive.mechanism import Mechanism, Turning
 from tests.mechanisms.closure import Array
-from tests.mechanisms.machines import Machine
+from tests.mechanisms.machines import REGULAR, Machine
 
 ROUNDING = 1e-12
 
@@ -35,8 +35,8 @@ def exponents(machine: Machine, axes: Array) -> Array:
 
 
 def test_rows_are_the_task(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    turn = ("turn z",) if mechanism.task.turning is Turning.ABOUT_Z else ()
-    assert tuple(mechanism.task.position) + turn == machines[0].robot.JACOBIAN_ROWS
+    turns = {Turning.NONE: "", Turning.ABOUT_Z: "z", Turning.FULL: "xyz"}[mechanism.task.turning]
+    assert (*mechanism.task.position, *(f"turn {c}" for c in turns)) == machines[0].robot.JACOBIAN_ROWS
 
 
 def test_it_is_the_derivative_of_the_closure(machines: tuple[Machine, ...]) -> None:
@@ -88,13 +88,13 @@ def _is_type_2(machine: Machine, margin: str) -> bool:
 
 
 def test_branch_margins_are_the_indicators(machines: tuple[Machine, ...]) -> None:
-    """In sign, and in size where the indicator is the sine that the description names; of a loop, but for a constant."""
+    """In sign, and in size where the indicator is a sine; a length is scaled by what depends on parameters alone, as in loops."""
     for machine in machines:
         axes = machine.draw(60, np.random.default_rng(5))
         indicators = machine.closure.indicators(machine.closure.joints(axes))
         for i, branch in enumerate(machine.mechanism.branches):
             column = machine.robot.MARGINS.index(branch.margin)
-            found = margins(machine, axes)[:, column]
-            constant = indicators[0, i] / found[0] if machine.mechanism.rods else 1.0
-            assert constant > 0.0
-            assert np.abs(found * constant - indicators[:, i]).max() < ROUNDING * np.abs(indicators).max()
+            share = margins(machine, axes)[:, column] / indicators[:, i]
+            assert (share > 0).all()
+            assert np.abs(share / share[0] - 1).max() < ROUNDING / REGULAR
+            assert machine.mechanism.rods or machine.largest[i] != 1.0 or abs(share[0] - 1) < ROUNDING / REGULAR

@@ -119,11 +119,20 @@ def test_the_image_is_what_the_flange_does(machines: tuple[Machine, ...]) -> Non
         image = machine.robot.orientation_image()
         rotations = machine.closure.poses(machine.draw(30, np.random.default_rng(9)))[1]
         turns = np.ptp(rotations, axis=0).max() > 1e-9
-        assert image.freedom == ("one" if turns else "zero") == machine.robot.FREEDOM
+        freedom = "one" if _stays(rotations) else "three"
+        assert image.freedom == (freedom if turns else "zero") == machine.robot.FREEDOM
         assert np.allclose(np.array(image.rotation) @ image.flange_axis, image.base_axis, rtol=0, atol=1e-15)
         relative = rotations @ np.array(image.rotation).T
-        if turns:
+        if image.freedom == "three":
+            assert np.abs(np.linalg.det(np.array(image.rotation)) - 1) < 1e-15
+        elif turns:
             assert np.allclose(relative @ image.base_axis, image.base_axis, rtol=0, atol=1e-12)
             assert np.allclose(rotations @ image.flange_axis, image.base_axis, rtol=0, atol=1e-12)
         else:
             assert np.allclose(relative, np.eye(3), rtol=0, atol=1e-15)
+
+
+def _stays(rotations: Array) -> bool:
+    """Whether some direction of the base is the same in every flange."""
+    relative = rotations[1:] @ rotations[0].T - np.eye(3)
+    return bool(np.linalg.svd(relative.reshape(-1, 3), compute_uv=False)[-1] < 1e-9)

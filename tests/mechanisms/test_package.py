@@ -49,7 +49,7 @@ def test_import_is_cheap_and_needs_no_numpy() -> None:
 def test_the_catalogue_is_the_descriptions() -> None:
     assert set(softkin.catalogue()) == {m.name for _, m in catalogue()}
     assert "Kin_Scara4_ZCCC" in softkin.catalogue()
-    assert len(softkin.catalogue()) == 32
+    assert len(softkin.catalogue()) == 36
 
 
 def test_everything_that_is_offered_is_there() -> None:
@@ -102,8 +102,7 @@ def test_configuration_bytes_are_those_of_the_description(mechanism: Mechanism, 
         turning = ["A4", "A1", "A2"]
     assert [b.name for b in robot.CONFIGURATION] == names + turning
     assert [b.kind for b in robot.CONFIGURATION] == ["branch"] * len(names) + ["period"] * len(turning)
-    ways = [b.names for b in mechanism.branches] if mechanism.rods else [("right", "left")] * len(names)
-    assert [b.branches for b in robot.CONFIGURATION] == ways + [()] * len(turning)
+    assert [b.branches for b in robot.CONFIGURATION] == [b.names for b in mechanism.branches] + [()] * len(turning)
 
 
 def test_parameters_are_those_of_the_description(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:

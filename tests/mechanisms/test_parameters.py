@@ -9,7 +9,7 @@ import softkin
 from softkin import KinematicsError, Status
 
 from derive.mechanism import Mechanism, Role
-from tests.mechanisms.machines import Machine
+from tests.mechanisms.machines import LENGTHS, Machine
 
 
 def refused(machine: Machine, name: str, **given: object) -> None:
@@ -43,6 +43,9 @@ def test_ranges(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
         if parameter.low_open:
             refused(machine, parameter.name, **{parameter.name: parameter.low})
             machine.changed(**{parameter.name: parameter.low + step})
+        elif parameter.role is Role.SIGNED_LENGTH:
+            refused(machine, parameter.name, **{parameter.name: 0.0})
+            machine.changed(**{parameter.name: parameter.low})
         else:
             machine.changed(**{parameter.name: parameter.low})
 
@@ -85,7 +88,7 @@ def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Mac
         assert robot.parameters[parameter.name] == expected
         own = next((p for p in mechanism.parameters if p.name == parameter.name), None)
         usual = {"check_limits": 1.0, "min_type2_margin": 1e-3}.get(parameter.name, 0.0)
-        by_role = {Role.LENGTH: None, Role.ANGLE: None, Role.SIGN: 1.0}
+        by_role = {**dict.fromkeys(LENGTHS), Role.ANGLE: None, Role.SIGN: 1.0}
         assert parameter.default == (usual if own is None else by_role.get(own.role, 0.0))
 
 

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 import softkin
 
+from tests.mechanisms.robots import UR5, UR10
+
 LINUXCNC = (
     # axes A1, A2, A4, then x, y and the turn c of LinuxCNC's scarakins with links 340 and 250
     ((30.0, 45.0, -15.0), (359.153398562339, 411.481456572267), 60.0),
@@ -122,3 +124,60 @@ def test_parallel_arm_by_hand() -> None:
     frame, configuration = softkin.PCC(link_length_1=300.0, link_length_2=250.0).forward((90.0, 180.0))
     assert frame.position == pytest.approx((-250.0, 300.0, 0.0), abs=1e-12)
     assert configuration == (1, 1, 2)
+
+
+@pytest.mark.parametrize(
+    ("dimensions", "position"),
+    [(UR5, (-817.25, -191.45, -5.491)), (UR10, (-1184.3, -256.141, 11.6))],
+)
+def test_zero_pose_of_arms_with_three_parallel_axes(dimensions: dict[str, float], position: tuple[float, ...]) -> None:
+    """As their controllers show it: stretched to the back, the flange turned to the side."""
+    robot = softkin.Ac6ThreeParallel(**dimensions)
+    frame, configuration = robot.forward((0.0,) * 6)
+    assert frame.position == pytest.approx(position, abs=1e-10)
+    assert np.allclose(frame.rotation, ((1, 0, 0), (0, 0, -1), (0, 1, 0)), rtol=0, atol=1e-15)
+    assert configuration[1:3] == (3, 3)
+    axes = robot.inverse(frame, configuration, (0.0,) * 6)
+    assert robot.forward(axes)[0].position == pytest.approx(position, abs=1e-8)
+
+
+ARM = {"d1": 350.0, "a1": 80.0, "a2": 310.0, "d3": 50.0, "a3": 30.0, "d4": 290.0}
+
+
+def test_zero_pose_of_the_articulated_robot() -> None:
+    """CODESYS: the origin at (a1 + d4 + d6, -d3, d1 + a2 + a3), x of the flange up, its y along -y, its z along x."""
+    frame, configuration = softkin.ArticulatedRobot6DOF(**ARM, d6=75.0).forward((0.0,) * 6)
+    assert frame.position == pytest.approx((80 + 290 + 75, -50.0, 350 + 310 + 30), abs=1e-12)
+    assert np.allclose(frame.rotation, ((0, 0, 1), (0, -1, 0), (1, 0, 0)), rtol=0, atol=1e-15)
+    assert configuration[0] == 1
+    assert configuration[2] == 3  # A4 and A6 are in line
+    arm = softkin.PosRRR(**ARM)
+    assert arm.forward((0.0, 0.0, 0.0))[0].position == pytest.approx((80 + 290, -50.0, 350 + 310 + 30), abs=1e-12)
+
+
+def test_the_articulated_robot_leans_back_with_a_positive_angle() -> None:
+    """The second axis looks along -y: 90 degrees lay the upper arm down to the back, and the forearm then points up."""
+    frame, _ = softkin.PosRRR(**ARM).forward((0.0, 90.0, 0.0))
+    assert frame.position == pytest.approx((80 - 310 - 30, -50.0, 350 + 290), abs=1e-12)
+    frame, _ = softkin.PosRRR(**ARM).forward((90.0, 0.0, 0.0))
+    assert frame.position == pytest.approx((50.0, 80 + 290, 350 + 310 + 30), abs=1e-12)
+
+
+def test_the_limits_that_codesys_states_leave_a_solution() -> None:
+    """A1 and A2 within a turn, A3 from -90 to 180 degrees: given as limits, the zero pose is inside."""
+    limits = {"lower_a1": -180.0, "upper_a1": 180.0, "lower_a2": -180.0, "upper_a2": 180.0}
+    robot = softkin.PosRRR(**ARM, **limits, lower_a3=-90.0, upper_a3=180.0)
+    frame, configuration = robot.forward((10.0, -20.0, 30.0))
+    assert robot.inverse(frame, configuration) == pytest.approx((10.0, -20.0, 30.0), abs=1e-9)
+
+
+def test_head_of_the_gantry_by_hand() -> None:
+    """Turned by 90 degrees about y, the flange's x looks down and its z along x."""
+    robot = softkin.Ac6TXTYTZRYRXRZ(flange_x=1.0, flange_y=2.0, flange_z=3.0)
+    frame, configuration = robot.forward((100.0, 200.0, 300.0, 90.0, 0.0, 0.0))
+    assert frame.position == pytest.approx((103.0, 202.0, 299.0), abs=1e-12)
+    assert np.allclose(frame.rotation, ((0, 0, 1), (0, 1, 0), (-1, 0, 0)), rtol=0, atol=1e-15)
+    assert configuration[0] == 1
+    flipped = robot.inverse(frame, (2, 0, 0, 0))
+    assert flipped[:3] == pytest.approx((100.0, 200.0, 300.0), abs=1e-9)
+    assert abs(flipped[4]) == pytest.approx(180.0, abs=1e-9)

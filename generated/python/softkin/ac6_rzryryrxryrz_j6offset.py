@@ -908,7 +908,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
                 if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0))
                 else usable_behind
             )
-            if (accepted > 0.5) or (searched < 0.5) or (radius > 180.25*DEGREE):
+            if (accepted > 0.5) or (searched < 0.5) or (radius > 180.75*DEGREE):
                 break
             tried = next_tried
             radius = next_radius

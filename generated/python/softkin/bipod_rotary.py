@@ -665,7 +665,6 @@ class BipodRotary(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
-        point_x, point_y, _ = offset
         k = self._constants
         assembly_sign = k.assembly_sign
         displacement = k.displacement
@@ -675,7 +674,7 @@ class BipodRotary(OffsetKinematics):
         outer_arm = k.outer_arm
         tcp_displacement = k.tcp_displacement
         # numbers of reasonable size
-        if not (abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9):
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -704,10 +703,8 @@ class BipodRotary(OffsetKinematics):
         if not (height_square >= -1e-12*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
-        y = foot_y + pivot_1_y + apart_2_x*rise
-        flange_y = y - point_y  # the flange behind the point
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        flange_x = x - point_x  # the flange behind the point
+        flange_y = foot_y + pivot_1_y + apart_2_x*rise
+        flange_x = foot_x + pivot_1_x - apart_2_y*rise
         span_1_x = displacement + flange_x - tcp_displacement  # rod 1
         branch_knee_1 = (span_1_x*sin_a1 - flange_y*cos_a1)/outer_arm
         span_2_x = flange_x + tcp_displacement - displacement  # rod 2

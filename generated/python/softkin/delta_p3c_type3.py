@@ -1359,7 +1359,6 @@ class DeltaP3CType3(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
-        point_x, point_y, point_z = offset
         k = self._constants
         assembly_sign = k.assembly_sign
         base_radius_1 = k.base_radius_1
@@ -1384,10 +1383,7 @@ class DeltaP3CType3(OffsetKinematics):
         tcp_radius_2 = k.tcp_radius_2
         tcp_radius_3 = k.tcp_radius_3
         # numbers of reasonable size
-        if not (
-            abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(point_z) <= 1e9 and abs(axis_a1) <= 1e9
-            and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9
-        ):
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -1459,13 +1455,10 @@ class DeltaP3CType3(OffsetKinematics):
         if not (height_square >= -1e-12*outer_arm_1*outer_arm_1):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
-        z = foot_z + pivot_1_z + normal_z*rise
-        flange_z = z - point_z  # the flange behind the point
-        x = foot_x + pivot_1_x + normal_x*rise
-        flange_x = x - point_x  # the flange behind the point
+        flange_z = foot_z + pivot_1_z + normal_z*rise
+        flange_x = foot_x + pivot_1_x + normal_x*rise
         span_1_x = flange_x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
-        y = foot_y + pivot_1_y + normal_y*rise
-        flange_y = y - point_y  # the flange behind the point
+        flange_y = foot_y + pivot_1_y + normal_y*rise
         span_1_y = flange_y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         branch_knee_1 = (-flange_z*cos_a1 - span_1_x*cos_azimuth_1*sin_a1 - span_1_y*sin_a1*sin_azimuth_1)/outer_arm_1
         span_2_x = flange_x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2

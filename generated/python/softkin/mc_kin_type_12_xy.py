@@ -1163,7 +1163,6 @@ class KinType12XY(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
-        point_x, point_y, _ = offset
         k = self._constants
         assembly_sign = k.assembly_sign
         link_length_1 = k.link_length_1
@@ -1175,7 +1174,7 @@ class KinType12XY(OffsetKinematics):
         offset_a2 = k.offset_a2
         swap_xy = k.swap_xy
         # numbers of reasonable size
-        if not (abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9):
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -1253,10 +1252,8 @@ class KinType12XY(OffsetKinematics):
         ):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
-        x = centre_1_x + foot_x - apart_2_y*rise
-        flange_x = x - point_x  # the flange behind the point
-        y = centre_1_y + foot_y + apart_2_x*rise
-        flange_y = y - point_y  # the flange behind the point
+        flange_x = centre_1_x + foot_x - apart_2_y*rise
+        flange_y = centre_1_y + foot_y + apart_2_x*rise
         span_upper_x = flange_x + flange_y*swap_xy - flange_x*swap_xy  # rod upper
         span_upper_y = flange_y + flange_x*swap_xy - flange_y*swap_xy  # rod upper
         branch_t = (span_upper_x*cos_a1 - span_upper_y*sin_a1)/link_length_2

@@ -590,7 +590,6 @@ class P2XType1(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2 = axes
-        point_x, _, _ = offset
         k = self._constants
         apart_2_y = k.apart_2_y
         arm_length_1 = k.arm_length_1
@@ -601,7 +600,7 @@ class P2XType1(OffsetKinematics):
         tcp_offset_1 = k.tcp_offset_1
         tcp_offset_2 = k.tcp_offset_2
         # numbers of reasonable size
-        if not (abs(point_x) <= 1e9 and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9):
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
@@ -626,8 +625,7 @@ class P2XType1(OffsetKinematics):
         if not (height_square >= -1e-12*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
-        x = foot_x + pivot_1_x - apart_2_y*rise
-        flange_x = x - point_x  # the flange behind the point
+        flange_x = foot_x + pivot_1_x - apart_2_y*rise
         span_1_x = flange_x - tcp_offset_1  # rod 1
         branch_carriage_1 = (span_1_x - a1)/arm_length_1
         span_2_x = flange_x + tcp_offset_2  # rod 2

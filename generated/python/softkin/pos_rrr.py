@@ -710,7 +710,7 @@ class PosRRR(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
-        point_x, _, point_z = offset
+        point_x, point_y, point_z = offset
         k = self._constants
         a1 = k.a1
         a2 = k.a2
@@ -723,30 +723,35 @@ class PosRRR(OffsetKinematics):
         offset_a3 = k.offset_a3
         # numbers of reasonable size
         if not (
-            abs(point_x) <= 1e9 and abs(point_z) <= 1e9 and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9
-            and abs(axis_a3) <= 1e9
+            abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(point_z) <= 1e9 and abs(axis_a1) <= 1e9
+            and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
         sin_q1 = sin(q1)
         cos_q1 = cos(q1)
-        x_at_q2 = a1*cos_q1
         q2 = DEGREE*(axis_a2 - offset_a2)
-        sin_q2 = sin(q2)
-        r11_at_q2 = -cos_q1*sin_q2
-        x_at_q3 = x_at_q2 + a2*r11_at_q2
         q3 = DEGREE*(axis_a3 - offset_a3)
         sin_q23 = sin(q2 + q3)
         r11_at_q23 = -cos_q1*sin_q23
+        x_at_q2 = a1*cos_q1
+        sin_q2 = sin(q2)
+        r11_at_q2 = -cos_q1*sin_q2
+        x_at_q3 = x_at_q2 + a2*r11_at_q2
         cos_q23 = cos(q2 + q3)
         r12_at_q23 = -cos_q1*cos_q23
-        x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
+        flange_x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
+        r13 = -r12_at_q23
+        x = flange_x + point_x*r11_at_q23 + point_y*sin_q1 + point_z*r13
+        r21_at_q23 = -sin_q1*sin_q23
         y_at_q2 = a1*sin_q1
         r21_at_q2 = -sin_q1*sin_q2
         y_at_q3 = y_at_q2 + a2*r21_at_q2
-        r21_at_q23 = -sin_q1*sin_q23
         r22_at_q23 = -cos_q23*sin_q1
-        y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
+        flange_y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
+        r22 = -cos_q1
+        r23 = -r22_at_q23
+        y = flange_y + point_x*r21_at_q23 + point_y*r22 + point_z*r23
         branch_arm = (x*cos_q1 + y*sin_q1)/machine_scale
         sin_q3 = sin(q3)
         cos_q3 = cos(q3)

@@ -928,7 +928,6 @@ class TripodLinear(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
-        point_x, point_y, point_z = offset
         k = self._constants
         arm_length = k.arm_length
         assembly_sign = k.assembly_sign
@@ -940,10 +939,7 @@ class TripodLinear(OffsetKinematics):
         outer_radius = k.outer_radius
         sin_rail_angle = k.sin_rail_angle
         # numbers of reasonable size
-        if not (
-            abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(point_z) <= 1e9 and abs(axis_a1) <= 1e9
-            and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9
-        ):
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
@@ -994,15 +990,12 @@ class TripodLinear(OffsetKinematics):
         if not (height_square >= -1e-12*arm_length*arm_length):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
-        z = foot_z + pivot_1_z + normal_z*rise
-        flange_z = z - point_z  # the flange behind the point
-        x = foot_x + pivot_1_x + normal_x*rise
-        flange_x = x - point_x  # the flange behind the point
+        flange_z = foot_z + pivot_1_z + normal_z*rise
+        flange_x = foot_x + pivot_1_x + normal_x*rise
         span_1_x = flange_x + outer_radius - inner_radius  # rod 1
         branch_carriage_1 = (a1 + flange_z*cos_rail_angle + span_1_x*sin_rail_angle)/arm_length
         span_2_x = flange_x + 0.5*inner_radius - 0.5*outer_radius  # rod 2
-        y = foot_y + normal_y*rise
-        flange_y = y - point_y  # the flange behind the point
+        flange_y = foot_y + normal_y*rise
         span_2_y = flange_y + 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*inner_radius  # rod 2
         branch_carriage_2 = (
             0.5*(2.0*a2 + 2.0*flange_z*cos_rail_angle + root(3.0)*span_2_y*sin_rail_angle - span_2_x*sin_rail_angle)

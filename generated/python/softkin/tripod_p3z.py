@@ -883,7 +883,6 @@ class TripodP3Z(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
-        _, _, point_z = offset
         k = self._constants
         apart_2_x = k.apart_2_x
         apart_2_y = k.apart_2_y
@@ -896,7 +895,7 @@ class TripodP3Z(OffsetKinematics):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(point_z) <= 1e9 and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
         a2 = axis_a2 - offset_a2
@@ -936,8 +935,7 @@ class TripodP3Z(OffsetKinematics):
         if not (height_square >= -1e-12*arm_length*arm_length):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
-        z = a1 + foot_z + normal_z*rise
-        flange_z = z - point_z  # the flange behind the point
+        flange_z = a1 + foot_z + normal_z*rise
         branch_carriage_1 = (a1 - flange_z)/arm_length
         branch_carriage_2 = (a2 - flange_z)/arm_length
         branch_carriage_3 = (a3 - flange_z)/arm_length

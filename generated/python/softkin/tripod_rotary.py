@@ -1528,7 +1528,6 @@ class TripodRotary(OffsetKinematics):
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
         """The signed margin of every branch for a point off the flange."""
         axis_a1, axis_a2, axis_a3 = axes
-        point_x, point_y, point_z = offset
         k = self._constants
         arm_1_radius = k.arm_1_radius
         arm_length_1 = k.arm_length_1
@@ -1540,10 +1539,7 @@ class TripodRotary(OffsetKinematics):
         offset_a3 = k.offset_a3
         stewart_radius = k.stewart_radius
         # numbers of reasonable size
-        if not (
-            abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(point_z) <= 1e9 and abs(axis_a1) <= 1e9
-            and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9
-        ):
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -1644,11 +1640,9 @@ class TripodRotary(OffsetKinematics):
         if not (height_square >= -1e-12*arm_length_2*arm_length_2):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
-        x = foot_x + pivot_1_x + normal_x*rise
-        flange_x = x - point_x  # the flange behind the point
+        flange_x = foot_x + pivot_1_x + normal_x*rise
         span_1_x = arm_1_radius + flange_x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
-        z = foot_z + pivot_1_z + normal_z*rise
-        flange_z = z - point_z  # the flange behind the point
+        flange_z = foot_z + pivot_1_z + normal_z*rise
         # rod 1
         span_1_z = (
             flange_z
@@ -1662,8 +1656,7 @@ class TripodRotary(OffsetKinematics):
         branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
         # rod 2
         span_2_x = flange_x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius
-        y = foot_y + normal_y*rise
-        flange_y = y - point_y  # the flange behind the point
+        flange_y = foot_y + normal_y*rise
         # rod 2
         span_2_y = (
             flange_y + 0.5*root(3.0)*arm_1_radius

@@ -487,7 +487,7 @@ class ArrayPrograms(Programs):
                 1.0,
                 usable_behind,
             )
-            done = (accepted > 0.5) | (searched < 0.5) | (radius > 180.25*DEGREE)
+            done = (accepted > 0.5) | (searched < 0.5) | (radius > 180.75*DEGREE)
             if settled(done, status):
                 break
             tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, usable_ahead, usable_behind, touching = advanced(
