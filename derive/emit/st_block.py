@@ -83,6 +83,8 @@ class Block:
     freedom: str
     turning: str
     """How much of the commanded rotation is followed: a value of `Turning`."""
+    refuses_flanges: bool
+    """Of an orientation kinematics: whether some flange cannot carry it."""
     rows: tuple[str, ...]
     margins: tuple[str, ...]
     computed: tuple[tuple[str, str], ...]
@@ -125,6 +127,7 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         configuration_size=kinematics.configuration_size,
         freedom=spelling["freedom"][kinematics.freedom.value],
         turning=mechanism.task.turning.value,
+        refuses_flanges=kinematics.compatible is not None and bool(kinematics.compatible.body),
         rows=kinematics.rows,
         margins=tuple(m.name for m in kinematics.margins),
         computed=tuple((stored_name(o), o) for o in constants(kinematics) if o not in direct(kinematics).values()),

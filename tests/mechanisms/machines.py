@@ -16,9 +16,9 @@ from derive.frames import Motion
 from derive.mechanism import Joint, Mechanism, Parameter, Role
 from tests.mechanisms.closure import Array, Closure
 
-MECHANISMS = tuple(m for _, m in catalogue() if not m.rods and not m.is_orientation)
+MECHANISMS = tuple(m for _, m in catalogue() if not m.rods and not m.is_orientation and m.search is None)
 """The serial mechanisms: machines of closed loops are in `loops.py`, those of a platform in tests/hexapod, orientation
-kinematics in tests/coupling."""
+kinematics in tests/coupling, what is searched along in tests/search."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
 TURNS = 1000.0

@@ -39,6 +39,7 @@ class Coupled(Mechanism):
 
     Axes: those of the position kinematics, then those of the orientation kinematics; the bytes of the configuration
     likewise. An axis or a byte of the second that has a name of the first is called `orientation <name>`.
+    An automatic choice counts the rotary axes of both, and linear ones where only they tell branches apart.
     The position is met or refused; of the rotation, the tool direction comes before the twist.
     Limits and parameters are those of the parts, `position_part` and `orientation_part`. The Jacobian has all six rows.
     """
@@ -79,7 +80,8 @@ class Coupled(Mechanism):
         self.BRANCHES = first.BRANCHES + second.BRANCHES
         self.PERIOD_AXES = first.PERIOD_AXES + tuple(count + i for i in second.PERIOD_AXES)
         angles = tuple(i for i, axis in enumerate(self.AXES) if axis.unit == "deg")
-        self.DISTANCE_AXES = angles or tuple(range(len(self.AXES)))
+        seen = set(first.DISTANCE_AXES) & set(angles) or not first.BRANCHES
+        self.DISTANCE_AXES = angles if seen and angles else (*first.DISTANCE_AXES, *angles)
 
     def __repr__(self) -> str:
         """The call that makes this mechanism."""

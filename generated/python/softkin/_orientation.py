@@ -40,12 +40,14 @@ class OrientationKinematics(Mechanism):
         if isinstance(total, Status):
             self._fail("image_on", total, rotation=image.rotation, flange_axis=flange_axis, base_axis=base_axis)
         rotation, base, flange, apart = total
+        freedom = "three"
         if self.FREEDOM == "zero":
-            return OrientationImage(image.freedom, rotation, base, flange)
-        one_axis = image.freedom == "zero" or (image.freedom == "one" and apart <= SAME_AXIS)
-        if self.FREEDOM == "one" and one_axis:
-            return OrientationImage("one", rotation, base, flange)
-        return OrientationImage("three", rotation, image.base_axis, image.flange_axis)
+            freedom = image.freedom
+        elif self.FREEDOM == "one" and (image.freedom == "zero" or (image.freedom == "one" and apart <= SAME_AXIS)):
+            freedom = "one"
+        if freedom != "one":
+            base, flange = image.base_axis, image.flange_axis
+        return OrientationImage(freedom, rotation, base, flange)
 
     def _total_image(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> TotalImage | Status:
         """Of a mechanism that turns about several axes: whatever the flange does, all orientations."""

@@ -1,0 +1,1 @@
+"""Orientation kinematics, and what carries them."""

@@ -1,0 +1,194 @@
+"""A coupling in Python: what it says about itself, and what it refuses."""
+
+from __future__ import annotations
+
+import copy
+import math
+import pickle
+
+import numpy as np
+import pytest
+import softkin
+from softkin import KinematicsError, Status
+
+ARM = {"d1": 350.0, "a2": 310.0, "d4": 290.0}
+
+
+def scara_with_c(**given: float) -> softkin.Coupled:
+    """A SCARA with a C axis."""
+    return softkin.Coupled(softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0), softkin.CAxis(**given))
+
+
+def refused(status: Status, call: object, *arguments: object, **given: object) -> str:
+    """The message of a refusal."""
+    with pytest.raises(KinematicsError) as refusal:
+        call(*arguments, **given)  # type: ignore[operator]
+    assert refusal.value.status is status, refusal.value
+    return str(refusal.value)
+
+
+def test_what_it_says_about_itself() -> None:
+    robot = scara_with_c()
+    assert [a.name for a in robot.AXES] == ["A1", "A2", "Z", "C"]
+    assert [b.name for b in robot.CONFIGURATION] == ["elbow", "A1", "A2", "C"]
+    assert [b.kind for b in robot.CONFIGURATION] == ["branch", "period", "period", "period"]
+    assert robot.DEFAULT_CONFIGURATION == (1, 0, 0, 0)
+    assert (robot.BRANCHES, robot.PERIOD_AXES, robot.DISTANCE_AXES) == (1, (0, 1, 3), (0, 1, 3))
+    assert robot.MARGINS == ("elbow",) and robot.PARAMETERS == () and dict(robot.parameters) == {}
+    assert robot.NAME == "Coupled(Kin_Scara2_Z, Kin_CAxis)"
+    assert repr(robot) == "Coupled(Scara2Z(arm_length_1=300.0, arm_length_2=250.0), CAxis())"
+    assert robot.position_part.ROLE == "position" and robot.orientation_part.ROLE == "orientation"
+
+
+def test_the_same_names_in_both_parts() -> None:
+    robot = softkin.Coupled(softkin.HGantry2(), softkin.Wrist2())
+    assert [a.name for a in robot.AXES] == ["A", "B", "orientation A", "orientation B"]
+    robot = softkin.Coupled(softkin.PosRRR(**ARM), softkin.Wrist3())
+    assert [b.name for b in robot.CONFIGURATION] == ["arm", "elbow", "A1", "A2", "A3", "hand", "A", "B", "C"]
+    assert len(set(robot.MARGINS)) == len(robot.MARGINS) == 3
+
+
+def test_copies_and_other_processes() -> None:
+    robot = scara_with_c(offset_c=5.0)
+    axes = (10.0, 20.0, 30.0, 40.0)
+    for other in (copy.copy(robot), copy.deepcopy(robot), pickle.loads(pickle.dumps(robot))):
+        assert repr(other) == repr(robot) and other.forward(axes) == robot.forward(axes)
+
+
+def test_the_image() -> None:
+    assert scara_with_c().orientation_image().freedom == "one"
+    gantry = softkin.Gantry3()
+    freedoms = {
+        "zero": softkin.Coupled(gantry, softkin.Tool(tool_x=3.0)),
+        "one": softkin.Coupled(gantry, softkin.CAxisTool(tool_x=3.0)),
+        "three": softkin.Coupled(gantry, softkin.Wrist2()),
+    }
+    for freedom, robot in freedoms.items():
+        image = robot.orientation_image()
+        assert image.freedom == freedom == robot.FREEDOM
+        assert np.array(image.rotation) @ np.array(image.flange_axis) == pytest.approx(np.array(image.base_axis))
+    assert softkin.Coupled(softkin.PosRRR(**ARM), softkin.CAxis()).FREEDOM == "three"
+    assert softkin.Coupled(softkin.Polar(), softkin.Tool(tool_z=5.0)).FREEDOM == "one"
+
+
+def test_parts_of_the_wrong_kind() -> None:
+    scara, wrist = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0), softkin.Wrist3()
+    whole = softkin.Kin5Axes()
+    for first, second, place in (
+        (scara, scara, "second"),
+        (wrist, wrist, "first"),
+        (whole, wrist, "first"),
+        (scara, whole, "second"),
+        (scara_with_c(), wrist, "first"),
+        (scara, scara_with_c(), "second"),
+        (scara, None, "second"),
+        ("scara", wrist, "first"),
+    ):
+        message = refused(Status.INVALID_COUPLING, softkin.Coupled, first, second)
+        assert message.startswith(f"Coupled: the {place} part must be a")
+    message = refused(Status.INVALID_COUPLING, softkin.Coupled, softkin.SCCC(link_length_1=300.0, link_length_2=200.0), wrist)
+    assert "follows the turn of the tool itself" in message
+
+
+def test_a_plane_is_met_or_refused() -> None:
+    """Two slides and two turns: z is not free."""
+    robot = softkin.Coupled(softkin.Gantry2(), softkin.Wrist2(tool_length=90.0))
+    axes = (100.0, -50.0, 30.0, 40.0)
+    (position, rotation), configuration = robot.forward(axes)
+    assert robot.inverse((position, rotation), configuration, axes) == pytest.approx(axes, abs=1e-9)
+    for shift in (-1.0, 0.1):
+        lifted = (*position[:2], position[2] + shift)
+        refused(Status.UNREACHABLE, robot.inverse, (lifted, rotation), configuration, axes)
+        assert all(s.status is Status.UNREACHABLE for s in robot.inverse_all((lifted, rotation)))
+        statuses = robot.inverse_batch([lifted, position], [rotation] * 2)[1]
+        assert list(statuses) == [Status.UNREACHABLE, Status.OK]
+
+
+def test_a_tool_that_points_the_opposite_way() -> None:
+    """No twist is nearest then; a wrist with three axes has it."""
+    down = ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0))
+    frame = (300.0, 100.0, 50.0), down
+    refused(Status.UNREACHABLE, scara_with_c().inverse, frame)
+    assert list(scara_with_c().inverse_batch([frame[0]], [down])[1]) == [Status.UNREACHABLE]
+    carrier = softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0)
+    robot = softkin.Coupled(carrier, softkin.Wrist3(tool_offset_z=75.0))
+    found, _ = robot.forward(robot.inverse(frame))
+    assert np.abs(np.subtract(found.rotation, down)).max() < 1e-12
+
+
+def test_limits_are_those_of_the_parts() -> None:
+    robot = scara_with_c(lower_c=-10.0, upper_c=10.0)
+    for c, allowed in ((5.0, True), (15.0, False)):
+        axes = (10.0, 20.0, 30.0, c)
+        frame, configuration = robot.forward(axes)
+        statuses = robot.inverse_batch([frame.position], [frame.rotation], [configuration], [axes])[1]
+        assert list(statuses) == [Status.OK if allowed else Status.UNREACHABLE]
+        if allowed:
+            assert robot.inverse(frame, configuration, axes) == pytest.approx(axes, abs=1e-9)
+        else:
+            refused(Status.UNREACHABLE, robot.inverse, frame, configuration, axes)
+    unchecked = scara_with_c(lower_c=-10.0, upper_c=10.0, check_limits=False)
+    assert unchecked.inverse(frame, configuration, axes) == pytest.approx(axes, abs=1e-9)
+
+
+@pytest.mark.parametrize("garbage", (math.nan, math.inf, -math.inf, 1e300, 1.1e9))
+@pytest.mark.parametrize("carrier", (softkin.Gantry3(), softkin.PosRRR(**ARM)), ids=("gantry", "arm"))
+def test_garbage(carrier: softkin.Mechanism, garbage: float) -> None:
+    """A refusal whatever the number is and wherever it stands, alone and in a batch; what is not needed is not looked at."""
+    robot = softkin.Coupled(carrier, softkin.Wrist3(tool_offset_z=75.0))
+    axes = [5.0, 10.0, 15.0, 20.0, 25.0, 30.0]
+    frame, configuration = robot.forward(axes)
+    for i in range(6):
+        wrong = [*axes[:i], garbage, *axes[i + 1 :]]
+        refused(Status.BAD_INPUT, robot.forward, wrong)
+        if carrier.BRANCHES or i >= 3:
+            refused(Status.BAD_INPUT, robot.orientation, wrong)
+            refused(Status.BAD_INPUT, robot.jacobian, wrong)
+            assert robot.singularity(wrong).is_singular
+            refused(Status.BAD_INPUT, robot.inverse, frame, (0,) * len(configuration), wrong)
+        assert list(robot.forward_batch([axes, wrong])[3]) == [Status.OK, Status.BAD_INPUT]
+    for i in range(12):
+        numbers = [*frame.position, *np.ravel(frame.rotation).tolist()]
+        numbers[i] = garbage
+        wrong_frame = tuple(numbers[:3]), (tuple(numbers[3:6]), tuple(numbers[6:9]), tuple(numbers[9:]))
+        refused(Status.BAD_INPUT, robot.inverse, wrong_frame)
+        assert {s.status for s in robot.inverse_all(wrong_frame)} == {Status.BAD_INPUT}
+        assert list(robot.inverse_batch([wrong_frame[0]], [wrong_frame[1]])[1]) == [Status.BAD_INPUT]
+
+
+def test_a_configuration_selects() -> None:
+    """Bytes of both parts, in the order of the axes; what is no configuration is refused."""
+    robot = softkin.Coupled(softkin.PosRRR(**ARM), softkin.Wrist3(tool_offset_z=75.0))
+    axes = (370.0, 40.0, -30.0, -500.0, 50.0, 60.0)
+    frame, configuration = robot.forward(axes)
+    assert configuration == (*configuration[:2], 2, 1, 1, configuration[5], -1, 1, 1)
+    assert robot.inverse(frame, configuration) == pytest.approx(axes, abs=1e-9)
+    other = (*configuration[:5], 3 - configuration[5], *configuration[6:])
+    flipped = robot.inverse(frame, other)
+    assert flipped[:3] == pytest.approx(axes[:3], abs=1e-9) and flipped[4] == pytest.approx(-50.0, abs=1e-9)
+    refused(Status.BAD_INPUT, robot.inverse, frame, (4, *configuration[1:]))
+    refused(Status.BAD_INPUT, robot.inverse, frame, (*configuration[:5], 4, *configuration[6:]))
+    refused(Status.BAD_INPUT, robot.inverse, frame, configuration[1:])
+    wrong = np.array([configuration, (*configuration[:5], 4, *configuration[6:])])
+    assert list(robot.inverse_batch([frame.position] * 2, [frame.rotation] * 2, wrong)[1]) == [Status.OK, Status.BAD_INPUT]
+
+
+def test_singular_poses_are_answers() -> None:
+    """The wrist stretched and the elbow nearly so: the reference decides what is free."""
+    robot = softkin.Coupled(softkin.PosRRR(**ARM), softkin.Wrist3(tool_offset_z=75.0))
+    axes = (10.0, 40.0, -30.0, 25.0, 0.0, 60.0)
+    frame, configuration = robot.forward(axes)
+    assert configuration[5] == 3 and robot.singularity(axes).is_singular
+    assert robot.inverse(frame, configuration, axes) == pytest.approx(axes, abs=1e-9)
+    again, _ = robot.forward(robot.inverse(frame, configuration, (0.0,) * 6))
+    assert np.abs(np.subtract(again.position, frame.position)).max() < 1e-9
+
+
+def test_an_automatic_choice_where_only_slides_tell() -> None:
+    """Branches of a position part without a rotary axis are told apart by its slides."""
+    scissors = softkin.catalogue()["Kin_P2X_Type1"]
+    needed = {p.name: 400.0 for p in scissors.PARAMETERS if p.default is None}
+    robot = softkin.Coupled(scissors(**needed), softkin.CAxis())
+    assert robot.DISTANCE_AXES == (0, 1, 2)
+    assert softkin.Coupled(softkin.Gantry3(), softkin.Wrist2()).DISTANCE_AXES == (3, 4)
+    assert softkin.Coupled(softkin.Gantry3(), softkin.Tool()).DISTANCE_AXES == (0, 1, 2)
