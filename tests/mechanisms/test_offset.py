@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from softkin import Status
 
 from derive.mechanism import Mechanism
+from tests.execution.closeness import asked
 from tests.mechanisms.closure import Array
 from tests.mechanisms.machines import Machine
 from tests.mechanisms.refusals import refusal
@@ -69,7 +69,6 @@ def test_who_offers_it(mechanism: Mechanism, machines: tuple[Machine, ...]) -> N
         assert hasattr(machine.robot, "configuration_offset") == (mechanism.name not in WITHOUT)
 
 
-@pytest.mark.serial
 def test_round_trip_with_the_reference_at_the_same_axes(machines: tuple[Machine, ...]) -> None:
     for machine in offered(machines):
         axes, offsets = drawn(machine, 1)
@@ -79,7 +78,6 @@ def test_round_trip_with_the_reference_at_the_same_axes(machines: tuple[Machine,
             assert np.abs(np.subtract(found, values)).max() < ROUND_TRIP
 
 
-@pytest.mark.serial
 def test_every_branch_brings_the_point_there(machines: tuple[Machine, ...]) -> None:
     """With any reference; joints that the position does not determine stay where the reference is."""
     for machine in offered(machines):
@@ -95,12 +93,15 @@ def test_every_branch_brings_the_point_there(machines: tuple[Machine, ...]) -> N
         for byte in (0, 1, 2, 3):
             configuration = (byte,) * robot.BRANCHES + (0,) * len(robot.PERIOD_AXES)
             rows = zip(places, offsets, near, strict=True)
-            found = np.array([robot.inverse_offset(p, o, configuration, n) for p, o, n in rows])
-            missed = (points(machine, found, offsets) - places)[:, machine.closure.task]
-            assert np.abs(missed).max() < 1e-11 * machine.reach
-            assert np.abs(machine.closure.joints(found)[:, frozen] - kept).max(initial=0.0) < 1e-10
+            asked_for = [asked(robot.inverse_offset, p, o, configuration, n) for p, o, n in rows]
+            solved = [answer is not None for _, answer in asked_for]
+            assert all(solved) or machine.mechanism.rods  # some working modes of a loop are on its other side
+            found = np.array([answer for _, answer in asked_for if answer is not None]).reshape(-1, axes.shape[1])
+            missed = (points(machine, found, offsets[solved]) - places[solved])[:, machine.closure.task]
+            assert np.abs(missed).max(initial=0.0) < 1e-11 * machine.reach
+            assert np.abs(machine.closure.joints(found)[:, frozen] - kept[solved]).max(initial=0.0) < 1e-10
             if byte in (1, 2) and robot.BRANCHES:
-                written = [robot.configuration_offset(f, o)[0] for f, o in zip(found, offsets, strict=True)]
+                written = [robot.configuration_offset(f, o)[0] for f, o in zip(found, offsets[solved], strict=True)]
                 assert written == [byte] * len(found)
 
 
