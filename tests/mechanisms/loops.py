@@ -35,6 +35,7 @@ class LoopClosure(Closure):
         super().__init__(mechanism, parameters)
         assert mechanism.assembly is not None
         self.reach = reach
+        self._met: dict[bytes, Array] = {}
         self._mode = mechanism.assembly.signs[bool(parameters[mechanism.assembly.parameter])]
         self._side = mechanism.assembly.indicator * sp.sign(mechanism.assembly.handedness)
         self._room = [b.largest - sp.Abs(b.value) for b in mechanism.bounds]
@@ -43,15 +44,20 @@ class LoopClosure(Closure):
 
     def poses(self, axes: Array) -> tuple[Array, Array]:
         """Position and rotation at axis values; not a number where nothing, or nothing on this machine's side, closes."""
-        joints = self.joints(axes)
-        found = np.full((len(axes), 3), np.nan)
+        rows = np.ascontiguousarray(axes, dtype=float)
+        if rows.tobytes() not in self._met:  # the same axis values are asked again and again
+            self._met[rows.tobytes()] = self._assembled(self.joints(rows))
+        return self._met[rows.tobytes()].copy(), np.tile(np.eye(3), (len(axes), 1, 1))
+
+    def _assembled(self, joints: Array) -> Array:
+        found = np.full((len(joints), 3), np.nan)
         wanted = (self.positive(joints) > 0).all(axis=1)
         for direction in (*DIRECTIONS, *-DIRECTIONS):
             rows = np.flatnonzero(np.isnan(found[:, 0]) & wanted)
             positions, closed = self.assembly_from(joints[rows], direction)
             mine = closed & (self.side(joints[rows], positions) > 0)
             found[rows[mine]] = positions[mine]
-        return found, np.tile(np.eye(3), (len(axes), 1, 1))
+        return found
 
     def assembly_from(self, joints: Array, direction: Array) -> tuple[Array, Array]:
         """Where Newton's method ends that starts far away in a direction, and whether the loop closes there."""
