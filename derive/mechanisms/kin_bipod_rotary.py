@@ -2,7 +2,7 @@
 
 from sympy import cos, sin
 
-from derive.mechanism import Mechanism, Task, Vendor, X, Y, assembly, branch, length, optional_length, rod, rotary
+from derive.mechanism import Constraint, Mechanism, Task, Vendor, X, Y, assembly, branch, length, optional_length, rod, rotary
 from derive.vectors import cross, minus, vector
 
 L1 = length("inner_arm", "Length of the inner arms", nominal=250.0)
@@ -35,4 +35,5 @@ MECHANISM = Mechanism(
         branch("knee_2", -cross(ARM_2, ROD_2), margin="stretched_2", outward=+1, inward=-1),
     ),
     assembly=assembly("tcp", cross(ROD_1, ROD_2), margin="arms_aligned", below=-1, above=+1),
+    constraints=(Constraint(abs(BASE - PLATE) < L1 + L2, "the arms must be able to reach the plate"),),
 )

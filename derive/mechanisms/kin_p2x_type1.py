@@ -1,6 +1,6 @@
 """Kin_P2X_Type1: a biglide, two carriages on rails along X."""
 
-from derive.mechanism import Mechanism, Task, Vendor, X, Y, assembly, branch, distance, length, linear, rod
+from derive.mechanism import Constraint, Mechanism, Task, Vendor, X, Y, assembly, branch, distance, length, linear, rod
 from derive.vectors import cross, minus, vector
 
 LA = length("arm_length_1", "Length of arm 1", nominal=400.0)
@@ -32,4 +32,5 @@ MECHANISM = Mechanism(
         branch("carriage_2", ROD_2[0], margin="upright_2", right=-1, left=+1),
     ),
     assembly=assembly("tcp", cross(ROD_1, ROD_2), margin="arms_aligned", below=-1, above=+1),
+    constraints=(Constraint(abs(Y1 - Y2) < LA + LB, "the arms must be able to meet between the rails"),),
 )

@@ -1,8 +1,9 @@
 """Kin_Tripod_Linear: three equal rails inclined to the vertical, equal rods."""
 
-from sympy import Rational, cos, pi, sin
+from sympy import Or, Rational, cos, pi, sin
 
 from derive.mechanism import (
+    Constraint,
     Mechanism,
     Task,
     Vendor,
@@ -52,6 +53,7 @@ MECHANISM = Mechanism(
         for k, (r, d) in enumerate(zip(RODS, DIRECTIONS, strict=True), 1)
     ),
     assembly=assembly("tcp", triple(RODS), margin="rods_coplanar", above=+1, below=-1),
+    constraints=(Constraint(Or(TILT.symbol > 0, abs(OUTER - INNER) < L), "the rods must be able to reach the plate"),),
     bounds=tuple(
         bound(cross(d, r) / L, sin(radians(SWING)), f"ball joint of rod {k}")
         for k, (r, d) in enumerate(zip(RODS, DIRECTIONS, strict=True), 1)

@@ -2,7 +2,7 @@
 
 from sympy import cos, sin
 
-from derive.mechanism import Mechanism, Task, Vendor, X, Y, assembly, branch, flag, length, rod, rotary
+from derive.mechanism import Constraint, Mechanism, Task, Vendor, X, Y, assembly, branch, flag, length, rod, rotary
 from derive.vectors import cross, minus, vector
 
 L1 = length("link_length_1", "Upper arm, origin to T", nominal=300.0)
@@ -40,5 +40,9 @@ MECHANISM = Mechanism(
     ),
     assembly=assembly(
         "e", MIRROR * cross(minus(W, T), minus(E, T)), margin="arms_aligned", handedness=MIRROR, left=+1, right=-1
+    ),
+    constraints=tuple(
+        Constraint(longest < L1 + L3 + L4 + L5 - longest, f"link {k} must be shorter than the other links of the loop together")
+        for k, longest in ((1, L1), (3, L3), (4, L4), (5, L5))
     ),
 )

@@ -95,13 +95,13 @@ class Mechanism(ABC):
     def _refusal(self, condition: str, **values: float) -> KinematicsError:
         """The error for parameters that do not meet a condition. The condition on a single one is its range."""
         found = ", ".join(f"{name} = {value!r}" for name, value in values.items())
-        needed = condition
+        needed = condition  # a sentence
         if not values:
             return KinematicsError(Status.NOT_INITIALIZED, f"{self.NAME}: the parameters must give {condition}")
         if len(values) == 1:
             (parameter,) = (p for p in self.PARAMETERS if p.name in values)
-            needed = f"{parameter.range} ({condition.removeprefix(parameter.name + ': ')})"
-        return KinematicsError(Status.NOT_INITIALIZED, f"{self.NAME}: {found} is not allowed: it must be {needed}")
+            needed = f"it must be {parameter.range} ({condition.removeprefix(parameter.name + ': ')})"
+        return KinematicsError(Status.NOT_INITIALIZED, f"{self.NAME}: {found} is not allowed: {needed}")
 
     def __repr__(self) -> str:
         """The call that makes this mechanism."""

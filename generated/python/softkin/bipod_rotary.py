@@ -219,6 +219,11 @@ class BipodRotary(OffsetKinematics):
                 "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
                 min_type2_margin=min_type2_margin,
             )
+        if not (abs(displacement - tcp_displacement) < inner_arm + outer_arm):
+            raise self._refusal(
+                "the arms must be able to reach the plate", inner_arm=inner_arm, outer_arm=outer_arm,
+                displacement=displacement, tcp_displacement=tcp_displacement,
+            )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
         unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit

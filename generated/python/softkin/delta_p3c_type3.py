@@ -369,6 +369,297 @@ class DeltaP3CType3(OffsetKinematics):
                 "the arms must not all point the same way", azimuth_1=azimuth_1, azimuth_2=azimuth_2,
                 azimuth_3=azimuth_3,
             )
+        if not (
+            (
+                (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                - (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+            )*((base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1) - (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)) + ((base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1) - (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2))*((base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1) - (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)) < (inner_arm_1 + inner_arm_2 + outer_arm_1 + outer_arm_2)*(inner_arm_1 + inner_arm_2 + outer_arm_1 + outer_arm_2)
+            and (
+                (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                - (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+            )*((base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1) - (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)) + ((base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1) - (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3))*((base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1) - (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)) < (inner_arm_1 + inner_arm_3 + outer_arm_1 + outer_arm_3)*(inner_arm_1 + inner_arm_3 + outer_arm_1 + outer_arm_3)
+            and (
+                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                - (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)) + ((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3))*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)) < (inner_arm_2 + inner_arm_3 + outer_arm_2 + outer_arm_3)*(inner_arm_2 + inner_arm_3 + outer_arm_2 + outer_arm_3)
+            and (
+                (
+                    (
+                        (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3)
+                        )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                        - (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2)
+                        )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                    )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                    - (
+                        (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2)
+                        )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                        - (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3)
+                        )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                    )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)) < 0.0
+                )
+                or (
+                    (
+                        (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2)
+                        )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                        - (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3)
+                        )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                    )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                    - (
+                        (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3)
+                        )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                        - (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2)
+                        )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                    )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)) < 0.0
+                )
+                or (
+                    (
+                        (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2)
+                        )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                        - (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3)
+                        )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                    )*(((inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1) + ((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)) + ((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)) - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2))*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)) - ((inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1) + ((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)) + ((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)) - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3))*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)))
+                    + (
+                        (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3)
+                        )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                        - (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2)
+                        )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                    )*(((inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1) + ((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)) + ((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)) - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3))*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)) - ((inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1) + ((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)) + ((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)) - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2))*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))) < 4.0*(((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)) - ((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)))*(((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)) - ((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)))*(inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                )
+                or (
+                    (
+                        (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2)
+                        )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                        - (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3)
+                        )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                    )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                    + (
+                        (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3)
+                        )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                        - (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2)
+                        )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                    )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                    - (
+                        (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2)
+                        )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                        - (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3)
+                        )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                    )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                    - (
+                        (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_3 + outer_arm_3)*(inner_arm_3 + outer_arm_3)
+                        )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                        - (
+                            (inner_arm_1 + outer_arm_1)*(inner_arm_1 + outer_arm_1)
+                            + (
+                                (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1))
+                            + (
+                                (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+                                - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+                            )*((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                            - (inner_arm_2 + outer_arm_2)*(inner_arm_2 + outer_arm_2)
+                        )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))
+                    )*((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)) > 2.0*(((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)) - ((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)))*(((base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)) - ((base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3) - (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1))*((base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2) - (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)))
+                )
+            )
+        ):
+            raise self._refusal(
+                "the arms must be able to reach the plate", azimuth_1=azimuth_1, azimuth_2=azimuth_2,
+                azimuth_3=azimuth_3, base_radius_1=base_radius_1, base_radius_2=base_radius_2,
+                base_radius_3=base_radius_3, inner_arm_1=inner_arm_1, inner_arm_2=inner_arm_2,
+                inner_arm_3=inner_arm_3, outer_arm_1=outer_arm_1, outer_arm_2=outer_arm_2, outer_arm_3=outer_arm_3,
+                tcp_radius_1=tcp_radius_1, tcp_radius_2=tcp_radius_2, tcp_radius_3=tcp_radius_3,
+            )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
         unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit

@@ -19,7 +19,7 @@ Singularities:
     stretched_2: type 1
     arms_aligned: type 2
 
-Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
+Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions that a search from many starts finds: 2, as many as the inverse has.
@@ -231,6 +231,26 @@ class KinType12XY(OffsetKinematics):
             raise self._refusal(
                 "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
                 min_type2_margin=min_type2_margin,
+            )
+        if not (link_length_3 + link_length_4 + link_length_5 > link_length_1):
+            raise self._refusal(
+                "link 1 must be shorter than the other links of the loop together", link_length_1=link_length_1,
+                link_length_3=link_length_3, link_length_4=link_length_4, link_length_5=link_length_5,
+            )
+        if not (link_length_1 + link_length_4 + link_length_5 > link_length_3):
+            raise self._refusal(
+                "link 3 must be shorter than the other links of the loop together", link_length_1=link_length_1,
+                link_length_3=link_length_3, link_length_4=link_length_4, link_length_5=link_length_5,
+            )
+        if not (link_length_1 + link_length_3 + link_length_5 > link_length_4):
+            raise self._refusal(
+                "link 4 must be shorter than the other links of the loop together", link_length_1=link_length_1,
+                link_length_3=link_length_3, link_length_4=link_length_4, link_length_5=link_length_5,
+            )
+        if not (link_length_1 + link_length_3 + link_length_4 > link_length_5):
+            raise self._refusal(
+                "link 5 must be shorter than the other links of the loop together", link_length_1=link_length_1,
+                link_length_3=link_length_3, link_length_4=link_length_4, link_length_5=link_length_5,
             )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)

@@ -226,6 +226,11 @@ class P2XType1(OffsetKinematics):
                 "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
                 min_type2_margin=min_type2_margin,
             )
+        if not (abs(rail_y_1 - rail_y_2) < arm_length_1 + arm_length_2):
+            raise self._refusal(
+                "the arms must be able to meet between the rails", arm_length_1=arm_length_1,
+                arm_length_2=arm_length_2, rail_y_1=rail_y_1, rail_y_2=rail_y_2,
+            )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
         unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit

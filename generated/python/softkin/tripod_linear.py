@@ -268,6 +268,11 @@ class TripodLinear(OffsetKinematics):
                 "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
                 min_type2_margin=min_type2_margin,
             )
+        if not ((rail_angle > 0.0) or (abs(inner_radius - outer_radius) < arm_length)):
+            raise self._refusal(
+                "the rods must be able to reach the plate", outer_radius=outer_radius, inner_radius=inner_radius,
+                arm_length=arm_length, rail_angle=rail_angle,
+            )
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
         unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit
