@@ -57,14 +57,14 @@ def _limits_and_garbage(one: tried.Twins) -> None:
         one.controller.end_point(sample.rotation, tried.Image("zero", rows), data, sample.axes)
         one.controller.total(tried.Image("one", rows))
         one.controller.with_orientation(rows, tried.Image("one"))
-    for end in (1e9, 1e9 - 150.0, 1e9 + 1.0):
-        one.controller.end_point(sample.rotation, tried.Image("zero"), data, [end] * len(sample.axes))
+    for other in one.regular:  # the turn nearest to the end of all numbers is beyond it for half of them
+        one.controller.end_point(other.rotation, tried.Image("zero"), data, [1e9] * len(sample.axes))
     for parameter in one.robot.PARAMETERS:
         for wrong in (float("nan"), 1e12, one.robot.parameters[parameter.name] + 0.5):
-            other = Carried(one.library, one.mechanism)
+            block = Carried(one.library, one.mechanism)
             changed = {parameter.name: 0.0 if parameter.kind in ("flag", "sign") else wrong}
-            other.initialise({**one.robot.parameters, **changed})
-            other.inverse((0.0, 0.0, 0.0), sample.rotation, data, sample.axes)
+            block.initialise({**one.robot.parameters, **changed})
+            block.inverse((0.0, 0.0, 0.0), sample.rotation, data, sample.axes)
 
 
 def _before_initialize(mechanism: Mechanism) -> None:

@@ -190,3 +190,38 @@ def test_solve_what_is_no_number() -> None:
             determinant, solution = solved(*tables)
             assert determinant == 0.0
             assert not solution.any()
+
+
+def test_is_rotation() -> None:
+    """Turned frames are; stretched, sheared or mirrored ones are not, nor what holds no numbers."""
+    is_rotation = LIBRARY.function("Softkin_IsRotation")
+    for turned in rotations(20):
+        assert is_rotation(turned.ravel().tolist())
+        for k in range(9):
+            off = turned.copy()
+            off.flat[k] += 1e-7 if k % 2 else -1e-7
+            assert is_rotation(off.ravel().tolist())
+            for wrong in (*NO_NUMBERS, 1e9, turned.flat[k] + 1e-4, turned.flat[k] - 1e-4):
+                off.flat[k] = wrong
+                assert not is_rotation(off.ravel().tolist())
+        assert not is_rotation((turned @ np.diag((1.0, 1.0, -1.0))).ravel().tolist())
+    assert not is_rotation([0.0] * 9)
+
+
+def test_relative_rotation() -> None:
+    """What the base sees; untouched where one of the two is no rotation."""
+    relative = LIBRARY.function("Softkin_RelativeRotation")
+    turned = rotations(20)
+    for base, rotation in zip(turned, reversed(turned), strict=True):
+        found = [7.0] * 9
+        assert relative(found, base.ravel().tolist(), rotation.ravel().tolist())
+        np.testing.assert_allclose(np.reshape(found, (3, 3)), base.T @ rotation, atol=1e-15)
+        for one, other in ((2.0 * base, rotation), (base, 2.0 * rotation)):
+            found = [7.0] * 9
+            assert not relative(found, one.ravel().tolist(), other.ravel().tolist())
+            assert found == [7.0] * 9
+
+
+def rotations(count: int) -> list[np.ndarray]:
+    rng = np.random.default_rng(3)
+    return [q * np.sign(np.linalg.det(q)) for q in (np.linalg.qr(rng.normal(size=(3, 3)))[0] for _ in range(count))]
