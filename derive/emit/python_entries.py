@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from derive.cost import Cost, costs_of
 from derive.emit.python_layout import fold
 from derive.kinematics import Kinematics
 from derive.mechanism import Mechanism
@@ -51,6 +52,22 @@ def configuration(kin: Kinematics) -> list[str]:
     branches = [_call("ConfigurationByte", name=b.name, kind="branch", branches=b.names, default=1) for b in kin.branches]
     periods = [_call("ConfigurationByte", name=j.name, kind="period", branches=(), default=0) for j in kin.period_joints]
     return _tuple([*branches, *periods])
+
+
+def costs(kin: Kinematics) -> list[str]:
+    """What forward and inverse kinematics cost, a line each, and the bounds of iterations."""
+    found = costs_of(kin)
+    rows = [f"forward: {_operations(found.forward)}", f"inverse: {_operations(found.inverse)}"]
+    if kin.branches:
+        rows.append(f"inverse, all {2 ** len(kin.branches)} branches open: {_operations(found.automatic)}")
+    return [*rows, *(f"{b.note}: at most {b.limit} passes, all of which are counted" for b in found.bounds)]
+
+
+def _operations(cost: Cost) -> str:
+    return (
+        f"{cost.additions} additions, {cost.multiplications} multiplications, {cost.divisions} divisions, "
+        f"{cost.roots} square roots, {cost.trigonometric} sines"
+    )
 
 
 def default_configuration(kin: Kinematics) -> str:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import astuple
 from textwrap import wrap
 
 from jinja2 import Environment
 
+from derive.cost import Bound, Cost, Costs, costs_of
 from derive.emit.st_block import Block
 from derive.emit.st_names import input_name, respelled
 from derive.kinematics import Kinematics
@@ -16,6 +18,7 @@ _WIDTH = 100
 _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
 _PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 the value nearest to the reference"
 _BRANCH = "0 automatic, 3 where both solutions coincide"
+_COST_HEAD = ("Method", "Additions", "Multiplications", "Divisions", "Square roots", "Sines")
 _KINDS = {
     (True, False): "Position kinematics for a SoftMotion axis group. ",
     (False, True): "Orientation kinematics, to be combined with a position kinematics for a SoftMotion axis group. ",
@@ -42,6 +45,7 @@ def description(kinematics: Kinematics, block: Block, templates: Environment) ->
         parameters=_table(("Parameter", "Unit", "Range", "Meaning"), _parameters(block)),
         configuration=list(_configuration(block)),
         singularities=list(_singularities(kinematics)),
+        costs=list(_costs(costs_of(kinematics), block)),
         notes=[line for note in kinematics.mechanism.notes for line in _item(respelled(note, names))],
         verification=list(_verification(kinematics)),
     )
@@ -92,6 +96,27 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
     if found.missed is not None:
         missed, total = found.missed
         yield from wrap(f"A scan is no proof: it missed {missed} of {total} solutions in this check.", _WIDTH)
+
+
+def _costs(costs: Costs, block: Block) -> Iterator[str]:
+    rows = [("AxesToCartesian", costs.forward), ("CartesianToAxes", costs.inverse)]
+    if block.branches:
+        rows[1:] = [("CartesianToAxes, one branch", costs.inverse)]
+        rows.append((f"CartesianToAxes, all {block.slots} branches open", costs.automatic))
+    yield from _table(_COST_HEAD, map(_cost_row, rows))
+    if costs.bounds:
+        yield ""
+    for bound in costs.bounds:
+        yield from _item(_bound(bound))
+
+
+def _cost_row(row: tuple[str, Cost]) -> Sequence[str]:
+    return row[0], *map(str, astuple(row[1]))
+
+
+def _bound(bound: Bound) -> str:
+    what = f"{bound.note[0].upper()}{bound.note[1:]}"
+    return f"{what}: at most {bound.limit} passes, all of which are counted; it stops as soon as it is done."
 
 
 def _item(text: str) -> list[str]:

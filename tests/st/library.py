@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from itertools import count
 from typing import Any
@@ -25,8 +25,17 @@ __all__ = ["Cell", "Library", "StError", "StFault", "compile_st"]
 _numbers = count(1)
 
 
-def compile_st(texts: Mapping[str, str], order: str = "rows", matrix_size: int = 72, max_config_data: int = 31) -> Library:
-    """Parse, check and translate texts (name -> Structured Text). Raises StError."""
+def compile_st(
+    texts: Mapping[str, str],
+    order: str = "rows",
+    matrix_size: int = 72,
+    max_config_data: int = 31,
+    instrument: Callable[[str], str] | None = None,
+) -> Library:
+    """Parse, check and translate texts (name -> Structured Text). Raises StError.
+
+    `instrument` may change the translated source, so that running it can be watched.
+    """
     universe = Universe()
     universe.declare("SM3M", "SMC_Matrix3", types.Opaque("SMC_Matrix3", matrix_size), Place("SM3M", 0))
     library_declarations: list[ast.Declaration] = []
@@ -38,7 +47,7 @@ def compile_st(texts: Mapping[str, str], order: str = "rows", matrix_size: int =
     everything = library_declarations + own
     facts = check(universe, everything)
     source = translate(universe, everything, facts, stubs.EXTRA_INITIALISATION)
-    return Library(universe, own, source, stubs.MatrixAccess(order), matrix_size)
+    return Library(universe, own, source, stubs.MatrixAccess(order), matrix_size, instrument)
 
 
 @lru_cache
@@ -56,10 +65,12 @@ class Library:
         source: Source,
         access: stubs.MatrixAccess,
         matrix_size: int,
+        instrument: Callable[[str], str] | None = None,
     ) -> None:
         # Typed loosely: what a declaration has depends on its kind, and a test knows the kind.
         self.objects: dict[str, Any] = {declaration.name: declaration for declaration in own}
-        self.python = "\n".join(source.lines)
+        translated = "\n".join(source.lines)
+        self.python = instrument(translated) if instrument else translated
         self.origin = Origin(f"<structured text {next(_numbers)}>", source.places)
         self._universe = universe
         self._access = access

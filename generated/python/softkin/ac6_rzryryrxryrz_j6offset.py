@@ -27,6 +27,12 @@ Configuration:
 Singularities:
     determinant: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 168 additions, 184 multiplications, 43 divisions, 1 square roots, 16 sines
+    inverse: 79333 additions, 160330 multiplications, 19830 divisions, 7205 square roots, 14412 sines
+    inverse, all 16 branches open: 1269328 additions, 2565280 multiplications, 317280 divisions, 115280 square roots, 230592 sines
+    search along the joint, from its reference outwards: at most 1800 passes, all of which are counted
+
 With a lateral offset of axis A6 no closed form is known: the inverse searches along A6, from the reference
 outwards. The fourth byte then tells whether the distance that is searched to vanish rises or falls with A6;
 without the offset it is always 1.

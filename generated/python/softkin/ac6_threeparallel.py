@@ -27,6 +27,11 @@ Singularities:
     elbow: type 1
     a4_parallel_a6: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
+    inverse: 171 additions, 169 multiplications, 39 divisions, 10 square roots, 18 sines
+    inverse, all 8 branches open: 1368 additions, 1352 multiplications, 312 divisions, 80 square roots, 144 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

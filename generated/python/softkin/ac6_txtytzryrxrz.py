@@ -20,6 +20,11 @@ Configuration:
 Singularities:
     a4_parallel_a6: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 31 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
+    inverse: 69 additions, 58 multiplications, 11 divisions, 1 square roots, 5 sines
+    inverse, all 2 branches open: 138 additions, 116 multiplications, 22 divisions, 2 square roots, 10 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

@@ -27,6 +27,11 @@ Singularities:
     elbow: type 1
     a4_parallel_a6: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 66 additions, 68 multiplications, 8 divisions, 0 square roots, 14 sines
+    inverse: 135 additions, 134 multiplications, 32 divisions, 6 square roots, 12 sines
+    inverse, all 8 branches open: 1080 additions, 1072 multiplications, 256 divisions, 48 square roots, 96 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

@@ -12,6 +12,10 @@ Configuration:
 Singularities:
     none
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 7 additions, 5 multiplications, 1 divisions, 0 square roots, 2 sines
+    inverse: 31 additions, 32 multiplications, 5 divisions, 1 square roots, 1 sines
+
 With an X or Y offset it can only be combined with a flange that keeps its orientation.
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:

@@ -15,6 +15,10 @@ Singularities:
     free_theta: type 1
     free_phi: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 11 additions, 7 multiplications, 1 divisions, 0 square roots, 4 sines
+    inverse: 25 additions, 25 multiplications, 11 divisions, 2 square roots, 6 sines
+
 On the vertical the azimuth is the reference's; at the origin the polar angle is too.
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:

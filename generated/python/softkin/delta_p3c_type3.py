@@ -23,6 +23,11 @@ Singularities:
     stretched_3: type 1
     rods_coplanar: type 2
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 82 additions, 122 multiplications, 10 divisions, 1 square roots, 6 sines
+    inverse: 125 additions, 168 multiplications, 28 divisions, 6 square roots, 3 sines
+    inverse, all 8 branches open: 1000 additions, 1344 multiplications, 224 divisions, 48 square roots, 24 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

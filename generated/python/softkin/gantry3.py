@@ -14,6 +14,10 @@ Configuration:
 Singularities:
     none
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 3 additions, 0 multiplications, 0 divisions, 0 square roots, 0 sines
+    inverse: 3 additions, 0 multiplications, 0 divisions, 0 square roots, 0 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

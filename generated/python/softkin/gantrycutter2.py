@@ -15,6 +15,10 @@ Configuration:
 Singularities:
     none
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 7 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
+    inverse: 33 additions, 34 multiplications, 5 divisions, 1 square roots, 1 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

@@ -18,6 +18,11 @@ Configuration:
 Singularities:
     rods_dependent: type 2
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 4280 additions, 4922 multiplications, 1400 divisions, 140 square roots, 120 sines
+    inverse: 279 additions, 359 multiplications, 51 divisions, 6 square roots, 0 sines
+    Newton's method: every pass improves the pose until the rods fit: at most 20 passes, all of which are counted
+
 Six lengths allow up to 40 poses. Forward kinematics finds the one in the assembly mode of the home pose, by
 Newton's method from there; it refuses where that does not converge in 20 passes. On six machines of different
 shape it found every pose that the inverse accepts within 40 degrees of home about each axis. Beyond 60

@@ -19,6 +19,11 @@ Singularities:
     stretched_2: type 1
     arms_aligned: type 2
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 30 additions, 29 multiplications, 6 divisions, 1 square roots, 4 sines
+    inverse: 61 additions, 53 multiplications, 19 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 244 additions, 212 multiplications, 76 divisions, 16 square roots, 8 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

@@ -17,6 +17,11 @@ Singularities:
     upright_2: type 1
     arms_aligned: type 2
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 19 additions, 21 multiplications, 4 divisions, 1 square roots, 0 sines
+    inverse: 25 additions, 15 multiplications, 1 divisions, 2 square roots, 0 sines
+    inverse, all 4 branches open: 100 additions, 60 multiplications, 4 divisions, 8 square roots, 0 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

@@ -15,6 +15,10 @@ Singularities:
     meet_a2: type 1
     flat: type 2
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 9 additions, 13 multiplications, 0 divisions, 1 square roots, 0 sines
+    inverse: 7 additions, 6 multiplications, 1 divisions, 1 square roots, 0 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

@@ -19,6 +19,11 @@ Singularities:
     point_on_axis_1: type 1
     elbow: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 30 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
+    inverse: 63 additions, 58 multiplications, 21 divisions, 5 square roots, 7 sines
+    inverse, all 4 branches open: 252 additions, 232 multiplications, 84 divisions, 20 square roots, 28 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

@@ -17,6 +17,11 @@ Configuration:
 Singularities:
     elbow: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 15 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
+    inverse: 40 additions, 32 multiplications, 10 divisions, 3 square roots, 4 sines
+    inverse, all 2 branches open: 80 additions, 64 multiplications, 20 divisions, 6 square roots, 8 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

@@ -18,6 +18,11 @@ Configuration:
 Singularities:
     elbow: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 26 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 80 additions, 75 multiplications, 15 divisions, 4 square roots, 5 sines
+    inverse, all 2 branches open: 160 additions, 150 multiplications, 30 divisions, 8 square roots, 10 sines
+
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:

@@ -19,6 +19,11 @@ Configuration:
 Singularities:
     elbow: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 29 additions, 15 multiplications, 5 divisions, 0 square roots, 7 sines
+    inverse: 83 additions, 81 multiplications, 17 divisions, 4 square roots, 5 sines
+    inverse, all 2 branches open: 166 additions, 162 multiplications, 34 divisions, 8 square roots, 10 sines
+
 The coupling may be given as travel per turn (pitch) or per degree (gear coupling), never both.
 
 With a pitch and no limits of its own, A4 is limited to -720 .. 720 degrees.

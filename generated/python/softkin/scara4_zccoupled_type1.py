@@ -18,6 +18,11 @@ Configuration:
 Singularities:
     elbow: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 25 additions, 9 multiplications, 4 divisions, 0 square roots, 7 sines
+    inverse: 80 additions, 76 multiplications, 16 divisions, 4 square roots, 5 sines
+    inverse, all 2 branches open: 160 additions, 152 multiplications, 32 divisions, 8 square roots, 10 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

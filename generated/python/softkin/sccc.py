@@ -18,6 +18,11 @@ Configuration:
 Singularities:
     elbow: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 28 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
+    inverse: 100 additions, 95 multiplications, 23 divisions, 4 square roots, 5 sines
+    inverse, all 2 branches open: 194 additions, 184 multiplications, 44 divisions, 8 square roots, 10 sines
+
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
 
 An open period is chosen nearest to the reference joint by joint; a commanded one counts on the axis.

@@ -20,6 +20,11 @@ Singularities:
     square_3: type 1
     rods_coplanar: type 2
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 59 additions, 109 multiplications, 7 divisions, 13 square roots, 0 sines
+    inverse: 77 additions, 151 multiplications, 6 divisions, 21 square roots, 0 sines
+    inverse, all 8 branches open: 616 additions, 1208 multiplications, 48 divisions, 168 square roots, 0 sines
+
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

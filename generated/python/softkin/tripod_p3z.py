@@ -20,6 +20,11 @@ Singularities:
     level_3: type 1
     rods_coplanar: type 2
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 34 additions, 55 multiplications, 7 divisions, 1 square roots, 0 sines
+    inverse: 53 additions, 54 multiplications, 7 divisions, 9 square roots, 0 sines
+    inverse, all 8 branches open: 424 additions, 432 multiplications, 56 divisions, 72 square roots, 0 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

@@ -23,6 +23,11 @@ Singularities:
     stretched_3: type 1
     rods_coplanar: type 2
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 117 additions, 209 multiplications, 10 divisions, 34 square roots, 6 sines
+    inverse: 165 additions, 258 multiplications, 33 divisions, 41 square roots, 3 sines
+    inverse, all 8 branches open: 1320 additions, 2064 multiplications, 264 divisions, 328 square roots, 24 sines
+
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,

@@ -16,6 +16,11 @@ Configuration:
 Singularities:
     tool_along_a: type 1
 
+Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
+    forward: 15 additions, 19 multiplications, 2 divisions, 0 square roots, 4 sines
+    inverse: 44 additions, 41 multiplications, 10 divisions, 1 square roots, 4 sines
+    inverse, all 2 branches open: 88 additions, 82 multiplications, 20 divisions, 2 square roots, 8 sines
+
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
