@@ -1,0 +1,122 @@
+"""Forward and inverse of arms that are searched along, on every branch, and how many solutions they find."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+from softkin import KinematicsError, Status
+
+from tests.search.arms import LATERALS, all_roots, arm, frame, miss, posed
+
+MOST_MISSED = 0.01
+"""A scan is no proof: this share of the solutions may be missed."""
+
+
+@pytest.mark.parametrize("lateral", (0.0, *LATERALS))
+def test_the_reported_configuration_leads_back(lateral: float) -> None:
+    robot, rng = arm(lateral), np.random.default_rng(1)
+    axes = rng.uniform(-500, 500, (150, 6))
+    positions, rotations, configurations, statuses = robot.forward_batch(axes)
+    assert (statuses == Status.OK).all()
+    for row, position, rotation in zip(axes, positions, rotations, strict=True):
+        assert np.abs(np.subtract(posed(frame(row, lateral))[0], position)).max() < 1e-9
+        assert np.abs(posed(frame(row, lateral))[1] - rotation).max() < 1e-13
+    found, statuses = robot.inverse_batch(positions, rotations, configurations, axes)
+    assert (statuses == Status.OK).all()
+    assert np.abs(found - axes).max() < 1e-6
+    assert max(miss(a, lateral, frame(b, lateral)) for a, b in zip(found, axes, strict=True)) < 1e-12
+
+
+@pytest.mark.parametrize("lateral", (0.0, *LATERALS))
+def test_right_angles_with_the_reference_at_the_same_axes(lateral: float) -> None:
+    grid = np.array(list(product((-90.0, 0.0, 90.0, 180.0), repeat=6)))
+    axes = grid if lateral == 0.0 else grid[np.random.default_rng(2).choice(len(grid), 300, replace=False)]
+    robot = arm(lateral)
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    found, statuses = robot.inverse_batch(positions, rotations, configurations, axes)
+    assert (statuses == Status.OK).all()
+    assert max(miss(a, lateral, frame(b, lateral)) for a, b in zip(found, axes, strict=True)) < 1e-10
+
+
+@pytest.mark.parametrize("lateral", (60.0, -35.0))
+def test_how_many_solutions_are_found(lateral: float) -> None:
+    robot, rng = arm(lateral), np.random.default_rng(3)
+    total = missed = 0
+    for axes in rng.uniform(-180, 180, (12, 6)):
+        wanted = frame(axes, lateral)
+        slots = [np.array(s.axes) for s in robot.inverse_all(posed(wanted), axes) if s.axes is not None]
+        assert all(miss(a, lateral, wanted) < 1e-12 for a in slots)
+        for root in all_roots(wanted, lateral, rng):
+            total += 1
+            apart = [np.abs(np.exp(1j * np.radians(root)) - np.exp(1j * np.radians(a))).max() for a in slots]
+            missed += min(apart, default=9.0) > 1e-5
+    assert total > 60
+    assert missed <= MOST_MISSED * total
+
+
+def test_every_slot_says_its_own_configuration() -> None:
+    robot = arm(60.0)
+    for axes in np.random.default_rng(5).uniform(-180, 180, (10, 6)):
+        solutions = robot.inverse_all(posed(frame(axes, 60.0)), axes)
+        assert [s.configuration[:4] for s in solutions] == [t[::-1] for t in product((1, 2), repeat=4)]
+        for solution in solutions:
+            if solution.axes is not None:
+                assert robot.forward(solution.axes)[1][:4] == solution.configuration[:4]
+
+
+def test_without_the_offset_there_is_no_second_crossing() -> None:
+    robot, axes = arm(0.0), (10.0, 20.0, 30.0, 40.0, 50.0, 60.0)
+    reached, configuration = robot.forward(axes)
+    with pytest.raises(KinematicsError) as error:
+        robot.inverse(reached, (*configuration[:3], 2, *configuration[4:]), axes)
+    assert error.value.status is Status.UNREACHABLE
+
+
+def test_a_path_never_jumps() -> None:
+    """Small steps with the reference at the previous result, the configuration held: near the pose before, or refused."""
+    robot, rng = arm(60.0), np.random.default_rng(6)
+    start, end = rng.uniform(-120, 120, (2, 6))
+    axes = np.array(start)
+    configuration = (*robot.forward(axes)[1][:4], 0, 0, 0, 0, 0, 0)
+    answered = 0
+    for share in np.linspace(0.0, 1.0, 400):
+        wanted = frame(start + share * (end - start), 60.0)
+        try:
+            found = np.array(robot.inverse(posed(wanted), configuration, axes))
+        except KinematicsError as error:
+            assert error.status is Status.UNREACHABLE
+            break
+        assert np.abs(found - axes).max() < 25.0
+        assert miss(found, 60.0, wanted) < 1e-12
+        axes, answered = found, answered + 1
+    assert answered > 20
+
+
+def test_garbage_ends_in_a_status() -> None:
+    robot = arm(60.0)
+    good = posed(frame(np.array([10.0, 20.0, 30.0, 40.0, 50.0, 60.0]), 60.0))
+    for position in ((np.nan, 0, 0), (np.inf, 0, 0), (1e10, 0, 0)):
+        with pytest.raises(KinematicsError) as error:
+            robot.inverse((position, good[1]))
+        assert error.value.status is Status.BAD_INPUT
+    with pytest.raises(KinematicsError) as error:
+        robot.inverse(((5000.0, 0.0, 0.0), good[1]))
+    assert error.value.status is Status.UNREACHABLE
+    with pytest.raises(KinematicsError) as error:
+        robot.inverse(good, None, (np.nan,) * 6)
+    assert error.value.status is Status.BAD_INPUT
+
+
+def test_batches_are_scalar_calls() -> None:
+    robot = arm(-35.0)
+    axes = np.random.default_rng(7).uniform(-180, 180, (12, 6))
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    open_bytes = np.zeros_like(configurations)
+    for bytes_ in (configurations, open_bytes):
+        found, statuses = robot.inverse_batch(positions, rotations, bytes_, axes)
+        for row in range(len(axes)):
+            assert statuses[row] == Status.OK
+            scalar = robot.inverse((positions[row], rotations[row]), tuple(int(b) for b in bytes_[row]), axes[row])
+            assert np.abs(np.subtract(scalar, found[row])).max() < 1e-9
