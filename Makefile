@@ -2,15 +2,18 @@
 PYTHON ?= python3
 ENVIRONMENT := .venv
 RUN := $(ENVIRONMENT)/bin/python
+# For an older SoftMotion: make generate PROFILE=before_4_11. The profiles stand in templates/st/softmotion.toml.
+PROFILE ?=
+OPTIONS := $(if $(PROFILE),--profile $(PROFILE))
 READY := $(ENVIRONMENT)/ready
 
 .PHONY: generate check test
 
 generate: $(READY)
-	$(RUN) -m derive generate
+	$(RUN) -m derive generate $(OPTIONS)
 
 check: $(READY)
-	$(RUN) -m derive check
+	$(RUN) -m derive check $(OPTIONS)
 
 test: $(READY)
 	$(RUN) -m pytest -n 2

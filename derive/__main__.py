@@ -10,7 +10,7 @@ from pathlib import Path
 from derive.catalogue import MECHANISMS, Entry, catalogue
 from derive.folder import ForeignFolder, differences, replace_folder
 from derive.mechanism import DescriptionError
-from derive.pipeline import Built, GenerationError, derive_all, render_all
+from derive.pipeline import Built, GenerationError, derive_all, languages, render_all
 
 OUTPUT = MECHANISMS.parents[1] / "generated"
 
@@ -36,6 +36,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         command = commands.add_parser(name, help=text, description=text)
         command.add_argument("--output", type=Path, default=OUTPUT, metavar="DIR", help="the output folder")
         command.add_argument("--mechanisms", type=Path, default=MECHANISMS, metavar="DIR", help="the descriptions")
+        command.add_argument("--profile", metavar="NAME", help="a profile of templates/st/softmotion.toml, for an older library")
         command.set_defaults(only=[])
         if name == "generate":
             command.add_argument("--only", nargs="+", metavar="NAME", help="these mechanisms alone, into another folder")
@@ -61,11 +62,12 @@ def _check(options: argparse.Namespace) -> int:
 
 
 def _files(options: argparse.Namespace) -> dict[str, str]:
+    outputs = languages(options.profile)
     built = []
     for one in derive_all(_chosen(catalogue(options.mechanisms), options.only)):
         print(_progress(one), flush=True)
         built.append(one)
-    return render_all(built)
+    return render_all(built, outputs)
 
 
 def _chosen(entries: tuple[Entry, ...], names: Sequence[str]) -> tuple[Entry, ...]:

@@ -62,7 +62,7 @@ def within_reach(
     found = list(statements)
     for measure in measures:
         for slope in slopes:
-            condition = _condition(found, measure.angle, slope)
+            condition = _condition(found, measure, slope)
             if condition is not None:
                 found = _in_order(_moved(found, measure, condition))
     return tuple(found)
@@ -86,8 +86,9 @@ def _in_order(statements: Sequence[Statement]) -> list[Statement]:
     return ordered
 
 
-def _condition(statements: Sequence[Statement], angle: sp.Symbol, slope: Slope) -> _Condition | None:
-    """The condition of a later step on the angle; None where it has none."""
+def _condition(statements: Sequence[Statement], measure: Measure, slope: Slope) -> _Condition | None:
+    """The condition of a later step on the angle of a partial step; None where it has none."""
+    angle = measure.angle
     if slope.reach is None:
         return None
     dependent = _dependent(statements, angle)
@@ -96,7 +97,17 @@ def _condition(statements: Sequence[Statement], angle: sp.Symbol, slope: Slope) 
     if not moved or size.free_symbols & dependent.keys():
         return None
     parts = tuple(_part(name, dependent[name], angle) for name in moved)
+    gone = _vanishing(statements, measure)
+    if all(p.along.xreplace(gone) == 0 and p.across.xreplace(gone) == 0 for p in parts):
+        return None  # where the angle is free it no longer moves them
     return _Condition(f"{angle.name}_of_{slope.sigma.name.removeprefix('sigma_')}", size, value, parts)
+
+
+def _vanishing(statements: Sequence[Statement], measure: Measure) -> dict[sp.Symbol, sp.Expr]:
+    """What is zero where the measure, a length, is zero: what it is the length of."""
+    values = [s.value for s in statements if isinstance(s, Let) and s.name == measure.value]
+    terms = [t for value in values if isinstance(value, Root) for t in sp.Add.make_args(value.args[0])]
+    return {t.base: sp.Integer(0) for t in terms if isinstance(t, sp.Pow) and t.exp == 2}
 
 
 def _dependent(statements: Sequence[Statement], angle: sp.Symbol) -> dict[sp.Symbol, sp.Expr]:

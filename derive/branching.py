@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import sympy as sp
@@ -54,18 +54,32 @@ def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_ze
     signs, indicators = _signs(mechanism, inverse, forward, optional_zero)
     found: list[Assignment] = []
     for branch, indicator in zip(mechanism.branches, indicators, strict=True):
-        agreeing = [(s, o) for s, row in zip(slopes, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)]
-        if len(agreeing) != 1:
-            raise DescriptionError(f"branch {branch.name!r}: its indicator agrees with {len(agreeing)} steps, not one")
-        first = next((a.branch.name for a in found if a.slope == agreeing[0][0]), None)
+        steps = [(s, o) for s, row in zip(slopes, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)]
+        if len(steps) != 1:
+            raise DescriptionError(f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one")
+        first = next((a.branch.name for a in found if a.slope == steps[0][0]), None)
         if first is not None:
             raise DescriptionError(f"branches {first!r} and {branch.name!r} name the same two solutions")
-        found.append(Assignment(branch, *agreeing[0]))
+        found.append(Assignment(branch, *steps[0]))
     unnamed = [s for s in slopes if s not in [a.slope for a in found]]
     if unnamed:
         names = ", ".join(str(s.sigma).removeprefix("sigma_") for s in unnamed)
         raise DescriptionError(f"no branch names the two solutions for {names}")
     return tuple(found)
+
+
+def steps_and_rest(
+    mechanism: Mechanism, inverse: Inverse, forward: Forward
+) -> tuple[tuple[Assignment, ...], tuple[Branch, ...]]:
+    """The steps of the branches that a step decides, and the branches that none does; every step must be a branch."""
+    branches = tuple(b for b in mechanism.branches if not b.is_crossing)
+    named = replace(mechanism, branches=branches)
+    signs, indicators = _signs(named, inverse, forward, False)
+    decided = tuple(
+        b for b, row in zip(branches, indicators, strict=True) if any(np.all(o * s == row) for s in signs for o in (1, -1))
+    )
+    found = assign(replace(mechanism, branches=decided), inverse, forward)
+    return found, tuple(b for b in branches if b not in decided)
 
 
 def _signs(

@@ -9,8 +9,9 @@ import sympy as sp
 
 from derive.assembling import Assembled, assembled, assembly_checks, bound_checks
 from derive.branching import Assignment, assign, margin_lets, with_branch_signs
+from derive.carried import BASE_AXIS, FLANGE_AXIS, coupling_programs
 from derive.closure import flange_rotation, heading_of
-from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program
+from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program, twist_program
 from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
 from derive.forward import (
     Forward,
@@ -22,13 +23,15 @@ from derive.forward import (
 )
 from derive.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics import Freedom, Kinematics, Margin
+from derive.legs import MARGIN
 from derive.mechanism import DescriptionError, Mechanism, Turning
-from derive.newton import START_POSITION, START_ROTATION, at_given, at_home, platform_pose
+from derive.newton import START_POSITION, START_ROTATION, at_given, at_home, found_from, search_program
 from derive.parameters import machine_parameters, setup_program
 from derive.passes import assemble, hoist
-from derive.platform import MARGIN, platform_checks, platform_singularity
+from derive.platform import platform_checks, platform_singularity
 from derive.pose import pose_of
-from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real
+from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real, shared
+from derive.searching import DETERMINANT, branch_statements, determinant_margin, margin_statements, solve_both
 from derive.shared_names import refuse_shared_names
 from derive.solve import Unsolved
 from derive.splits import is_spatial
@@ -40,6 +43,8 @@ def build(mechanism: Mechanism) -> Kinematics:
     _count(mechanism)
     if mechanism.is_platform:
         return _platform(mechanism)
+    if mechanism.search is not None:
+        return _searching(mechanism)
     closed = assembled(mechanism, pose_at_axes(mechanism))
     forward = closed.forward
     inverse = solve_pose(mechanism)
@@ -65,7 +70,11 @@ def build(mechanism: Mechanism) -> Kinematics:
     ]
     if mechanism.task.turning is not Turning.NONE:
         programs.append(_projection_program(mechanism))
-    if mechanism.offset_interface:
+    if _turns_in_a_coupling(mechanism):
+        programs.append(twist_program(mechanism, forward))
+    if mechanism.is_orientation:
+        programs += coupling_programs(mechanism)
+    elif mechanism.offset_interface:
         programs += _offset_programs(mechanism, closed)
     return _finished(mechanism, programs, kept)
 
@@ -76,7 +85,8 @@ def _platform(mechanism: Mechanism) -> Kinematics:
     if inverse.derivation.slopes or mechanism.branches:
         raise DescriptionError("a platform that moves freely has no branches: its closure must determine every joint")
     statements = inverse.derivation.statements
-    forward, from_start = (platform_pose(mechanism, start(mechanism)) for start in (at_home, at_given))
+    search = search_program(mechanism)
+    forward, from_start = (found_from(mechanism, start, search) for start in (at_home(mechanism), at_given()))
     checks = (*platform_checks(mechanism, (*inverse.naming, *statements)), *bound_checks(mechanism, offset=False))
     programs = [
         forward_program(mechanism, forward, ()),
@@ -90,6 +100,25 @@ def _platform(mechanism: Mechanism) -> Kinematics:
         _projection_program(mechanism),
     ]
     return _finished(mechanism, programs, (Margin(MARGIN, -1, "type 2"),))
+
+
+def _searching(mechanism: Mechanism) -> Kinematics:
+    """A chain that one parameter keeps from having a closed form: searched along one joint, one determinant is the margin."""
+    both = solve_both(mechanism)
+    statements, margins = margin_statements(both)
+    determinant, scaled = determinant_margin(both)
+    margin = Let(real(f"margin_{DETERMINANT.name}"), scaled)
+    programs = [
+        forward_program(mechanism, replace(both.forward, statements=statements), margins),
+        orientation_program(both.forward),
+        inverse_program("branch", mechanism, both.closed, branch_statements(both)),
+        _limits_program(mechanism),
+        assemble("singularity", (*both.forward.statements, *determinant, margin), [Output(DETERMINANT.name, margin.name)]),
+        jacobian_program(mechanism, both.forward),
+        _image_program(mechanism),
+        _projection_program(mechanism),
+    ]
+    return _finished(mechanism, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
 
 
 def _count(mechanism: Mechanism) -> None:
@@ -106,7 +135,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
     """Everything together, with what depends on parameters alone moved into the setup."""
     parameters = machine_parameters(mechanism)
     constants = {o.name for o in setup_program(mechanism, parameters, ()).outputs}
-    lowered, hoisted = hoist(programs, constants)
+    lowered, hoisted = hoist((*shared(programs), *programs), constants)
     setup = setup_program(mechanism, parameters, hoisted)
     finished = {program.name: program for program in lowered}
     for program in lowered:
@@ -130,6 +159,10 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
         freedom=_freedom(mechanism),
         reads_rotation=mechanism.task.turning is not Turning.NONE,
         forward_from=finished.get("forward_from"),
+        twist=finished.get("twist"),
+        compatible=finished.get("compatible"),
+        carried=finished.get("carried"),
+        total_image=finished.get("total_image"),
     )
 
 
@@ -138,7 +171,7 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
     allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
     allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
-    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION)}
+    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}
     strangers = [s.name for s in program.inputs if s.name not in allowed]
     if strangers:
         raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
@@ -199,8 +232,8 @@ def _inside(key: str, value: sp.Symbol, note: str) -> Require:
 
 
 def _projection_program(mechanism: Mechanism) -> Program:
-    """The nearest rotation that the flange can have."""
-    if mechanism.task.turning is Turning.FULL:
+    """The nearest rotation that the flange can have; of a direction, any twist about it."""
+    if mechanism.task.turning in (Turning.DIRECTION, Turning.FULL):
         own = [Output(r.name, r) for r in ROTATION_ENTRIES]
         return assemble("projection", (*finite(ROTATION_ENTRIES), *is_rotation()), own)
     assert mechanism.chain is not None
@@ -209,6 +242,11 @@ def _projection_program(mechanism: Mechanism) -> Program:
     rotation = turned * flange_rotation(mechanism.chain)
     outputs = [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, rotation, strict=True)]
     return assemble("projection", (*finite(ROTATION_ENTRIES), *is_rotation(), *heading_lets(mechanism)), outputs)
+
+
+def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
+    """Whether a coupling with this mechanism needs to know how its frame turns: the task's rows do not say all of it."""
+    return (mechanism.is_position or mechanism.is_orientation) and _freedom(mechanism) is not Freedom.ZERO
 
 
 def _freedom(mechanism: Mechanism) -> Freedom:

@@ -17,7 +17,7 @@ from derive.mechanism import DescriptionError, Joint, Mechanism, Rod, Role, Turn
 from derive.pose import pose_of
 from derive.problem import Equation
 from derive.program import DEGREE, Let, real
-from derive.splits import Unknowns, is_spatial, split_positions
+from derive.splits import Commanded, Unknowns, is_spatial, split_positions
 
 COORDINATES = ("x", "y", "z")
 ROTATION_ENTRIES = tuple(real(f"r{i}{j}") for i in (1, 2, 3) for j in (1, 2, 3))
@@ -37,7 +37,9 @@ class Closure:
     plane: sp.Expr | None = None
     """The z that a planar machine has."""
     turns: tuple[Factor, ...] = ()
-    """The turns whose product is the commanded rotation, where the whole of it is followed."""
+    """The turns whose product is the commanded rotation, where more of it is followed than a turn about z."""
+    columns: tuple[int, ...] = (0, 1, 2)
+    """The columns of the commanded rotation that are followed."""
 
 
 def signs_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
@@ -107,16 +109,23 @@ def pose_closure(mechanism: Mechanism) -> Closure:
     return Closure(closure.equations + turns, arguments, closure.lets, closure.plane)
 
 
+def closure_at(mechanism: Mechanism, known: Joint) -> Closure:
+    """The closure of a commanded pose with one joint known."""
+    assert mechanism.chain is not None
+    return _spatial_closure(mechanism, mechanism.chain, tuple(j for j in mechanism.joints if j != known))
+
+
 def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ...]) -> Closure:
     """A chain that turns about several axes: its position equations are split, its rotation is left to the solver."""
     angles, lengths = (tuple(j.symbol for j in moving if j.is_angle is kind) for kind in (True, False))
     unknowns = Unknowns(angles, lengths, all_angles(mechanism), signs_of(mechanism))
-    follows = mechanism.task.turning is Turning.FULL
-    rotation = sp.Matrix(3, 3, ROTATION_ENTRIES) if follows else None
-    equations = split_positions(chain, rotation, unknowns) if mechanism.task.position else ()
+    follows = mechanism.task.turning is not Turning.NONE
+    columns = (2,) if mechanism.task.turning is Turning.DIRECTION else (0, 1, 2)
+    commanded = Commanded(sp.Matrix(3, 3, ROTATION_ENTRIES), columns if follows else ())
+    equations = split_positions(chain, commanded, unknowns) if mechanism.task.position else ()
     pose = pose_of(chain)
     arguments = dict.fromkeys((*_arguments(pose.position), *(t.amount for t in pose.turns)))
-    return Closure(equations, tuple(arguments), turns=pose.turns if follows else ())
+    return Closure(equations, tuple(arguments), turns=pose.turns if follows else (), columns=columns)
 
 
 def heading_of(chain: Chain) -> sp.Expr:
@@ -164,7 +173,7 @@ def _position_closure(mechanism: Mechanism, position: sp.ImmutableMatrix) -> Clo
     for value, name in zip(position, COORDINATES, strict=True):
         if name in mechanism.task.position:
             equations.append(_equation(mechanism, name, value - real(name)))
-        else:
+        elif mechanism.task.position:
             plane = sp.sympify(value)
             if plane.free_symbols & {j.symbol for j in mechanism.joints}:
                 raise DescriptionError(f"{name} is not commanded but the joints move it")

@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.closure import COORDINATES, with_fixed_angles
+from derive.closure import COORDINATES, ROTATION_ENTRIES, with_fixed_angles
 from derive.forward import Forward
 from derive.frames import Chain, Motion
 from derive.kinematics import Margin
@@ -25,8 +25,14 @@ from derive.splits import is_spatial
 from derive.trigonometry import named_trigonometry
 from derive.walk import walk
 
-_ROWS = ("x", "y", "z", "turn x", "turn y", "turn z")
-_TURNS = {Turning.NONE: (), Turning.ABOUT_Z: ("turn z",), Turning.FULL: ("turn x", "turn y", "turn z")}
+_ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
+"""Of a twist: along and about the axes of the base, and about the x and y of the tool, which tilt its z."""
+_TURNS: dict[Turning, tuple[str, ...]] = {
+    Turning.NONE: (),
+    Turning.ABOUT_Z: ("turn z",),
+    Turning.DIRECTION: ("tilt x", "tilt y"),
+    Turning.FULL: ("turn x", "turn y", "turn z"),
+}
 
 
 def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
@@ -36,23 +42,42 @@ def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
 
 def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
     """Rows of the task by axes; rotary axes per radian."""
-    width = len(mechanism.joints)
     if mechanism.is_platform:
         solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
-        return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, width))
-    matrix, naming = (_by_screws(mechanism), ()) if mechanism.chain is not None else _by_closure(mechanism)
+        return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, len(mechanism.joints)))
+    statements, values = jacobian_entries(mechanism)
+    return assemble("jacobian", (*forward.statements, *statements), _entries_of(values, len(mechanism.joints)))
+
+
+def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
+    """All six rows of the twist of a chain's end, whatever the task is: what a coupling asks for."""
+    lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
+    return assemble("twist", (*forward.statements, *lets), _entries_of(values, len(mechanism.joints)))
+
+
+def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
+    """The entries by rows at a pose that forward kinematics has found, and statements that they need besides."""
+    if mechanism.chain is not None:
+        return _per_motor(mechanism, _by_screws(mechanism, jacobian_rows(mechanism)))
+    matrix, naming = _by_closure(mechanism)
+    lets, values = _per_motor(mechanism, matrix)
+    return (*naming, *lets), values
+
+
+def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Let, ...], list[sp.Expr]]:
+    """The entries by motors, their sines and cosines under names."""
     coupled = matrix * _motor_matrix(mechanism)
     planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
     entries = [sp.expand_mul(e) if planar else e for e in coupled]
     lets, values = named_trigonometry(mechanism, entries)
-    return assemble("jacobian", (*forward.statements, *naming, *lets), _entries_of(values, width))
+    return lets, values
 
 
 def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:
     return [Output(f"j{k // width + 1}{k % width + 1}", v) for k, v in enumerate(values)]
 
 
-def _by_screws(mechanism: Mechanism) -> sp.Matrix:
+def _by_screws(mechanism: Mechanism, rows: Sequence[str]) -> sp.Matrix:
     """A serial chain: every factor moves the end as a screw (z × p), scaled by how each joint moves the factor."""
     assert mechanism.chain is not None
     screws, position = _screws(mechanism, mechanism.chain)
@@ -64,8 +89,11 @@ def _by_screws(mechanism: Mechanism) -> sp.Matrix:
             if rate != 0:
                 column += rate * _twist(screw, position)
         columns.append(column)
-    full = sp.Matrix.hstack(*columns)
-    chosen = [_ROWS.index(row) for row in jacobian_rows(mechanism)]
+    full = sp.Matrix.hstack(sp.zeros(6, 0), *columns)
+    if mechanism.task.turning is Turning.DIRECTION:
+        rotation = sp.Matrix(3, 3, list(ROTATION_ENTRIES))
+        full = sp.Matrix.vstack(full, (rotation.T * full[3:, :])[:2, :])
+    chosen = [_ROWS.index(row) for row in rows]
     return full.extract(chosen, list(range(full.cols)))
 
 
@@ -123,8 +151,8 @@ def _entries(
 
 def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
     """How the motors move the joints: the identity, and the gear couplings."""
-    joints = sp.Matrix([j.motor + j.coupling for j in mechanism.joints])
-    return joints.jacobian([j.motor for j in mechanism.joints])
+    motors = [j.motor for j in mechanism.joints]
+    return sp.Matrix(len(motors), len(motors), [sp.diff(j.motor + j.coupling, m) for j in mechanism.joints for m in motors])
 
 
 @dataclass(frozen=True)
@@ -141,6 +169,8 @@ def singularity_program(
     """The margins that multiply to the determinant of the Jacobian, and their integer exponents."""
     lets = [Let(real(f"margin_{f.name}"), f.value) for f in factors]
     outputs = [Output(f.name, let.name) for f, let in zip(factors, lets, strict=True)]
+    if not mechanism.joints:
+        return assemble("singularity", statements, []), ()
     draft = assemble("singularity", (*statements, *lets), outputs)
     exponents = _exponents(mechanism, draft, jacobian)
     kept = [(o, e) for o, e in zip(draft.outputs, exponents, strict=True) if e != 0]

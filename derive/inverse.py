@@ -13,6 +13,7 @@ from derive.closure import (
     OFFSET,
     Closure,
     all_angles,
+    closure_at,
     fixed_angle_lets,
     flange_rotation,
     offset_closure,
@@ -60,6 +61,13 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
     return Inverse(closure, derivation, naming, mechanism.joints)
 
 
+def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:
+    """Solve the closure of a commanded pose for all joints but one, which is known: the equations need not agree."""
+    closure = closure_at(mechanism, known)
+    moving = tuple(j for j in mechanism.joints if j != known)
+    return Inverse(closure, _solve(mechanism, closure, moving, is_overdetermined=True), closure.lets, moving)
+
+
 def solve_offset(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded point; joints that a position cannot determine are frozen."""
     frozen = _frozen_joints(mechanism)
@@ -71,7 +79,9 @@ def solve_offset(mechanism: Mechanism) -> Inverse:
     return Inverse(closure, derivation, naming, moving, frozen)
 
 
-def _solve(mechanism: Mechanism, closure: Closure, moving: tuple[Joint, ...]) -> Derivation:
+def _solve(
+    mechanism: Mechanism, closure: Closure, moving: tuple[Joint, ...], *, is_overdetermined: bool = False
+) -> Derivation:
     joints = {j.symbol: j for j in mechanism.joints}
     problem = Problem(
         angles=tuple(j.symbol for j in moving if j.is_angle),
@@ -81,8 +91,10 @@ def _solve(mechanism: Mechanism, closure: Closure, moving: tuple[Joint, ...]) ->
         free={j.symbol: free(j) for j in mechanism.joints},
         scale=SCALE,
         signs=signs_of(mechanism),
+        is_overdetermined=is_overdetermined,
         turns=closure.turns,
         rotation=ROTATION_ENTRIES if closure.turns else (),
+        columns=closure.columns,
         positive=tuple(polynomial(p, all_angles(mechanism), signs_of(mechanism)) for p in mechanism.positive),
     )
     return solve(problem, closure.arguments, lambda angle: (*axis_lets(joints[angle]), plain_angle(joints[angle])))
@@ -125,9 +137,9 @@ def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
 def _heading(mechanism: Mechanism) -> tuple[Statement, ...]:
     if mechanism.task.turning is Turning.NONE:
         return ()
-    if mechanism.task.turning is Turning.FULL:
-        return is_rotation()
-    return (*is_rotation(), *heading_lets(mechanism))
+    if mechanism.task.turning is Turning.ABOUT_Z:
+        return (*is_rotation(), *heading_lets(mechanism))
+    return is_rotation()
 
 
 def inverse_program(

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from derive.mechanism import Branch, Joint, Limited, Mechanism, Parameter
-from derive.program import Program
+from derive.program import Program, shared
 
 
 class Freedom(Enum):
@@ -47,6 +47,8 @@ class Evidence:
     jacobian: float
     solutions: int
     """Real solutions found by multi-start root finding, agreeing with the slots at every sampled pose."""
+    missed: tuple[int, int] | None = None
+    """Of a search: how many solutions no slot held, of how many in all."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,17 @@ class Kinematics:
     projection       r11…r33 → the same, projected to the nearest rotation the flange can have; None where not chosen
     offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None where the interface is not offered
     offset_configuration   axis_*, point_* → `branch_<name>`; None likewise
+    twist            axis_* → j11 … of all six rows, x y z turn x turn y turn z; None where no coupling asks for it, and where
+                     the flange keeps its orientation: then the rows of `jacobian` are all there are
+
+    Of an orientation kinematics, None for any other. The flange that carries it turns about the line flange_axis_* (as the
+    flange sees it) = base_axis_* (as the machine does); both are zero for a flange that turns freely:
+
+    compatible       flange_axis_* → nothing; its conditions are what a flange that turns can carry
+    carried          flange_axis_*, base_axis_*, r11…r33 commanded (those it reads) → x y z from the flange to the end point
+    total_image      r11…r33 one orientation of the flange, flange_axis_*, base_axis_* → the image of both together as `image`
+                     has it, if the flange keeps its orientation or turns about the same axis: `apart`, the sine of the
+                     angle between the two axes, says whether it is the same
     """
 
     mechanism: Mechanism
@@ -91,7 +104,25 @@ class Kinematics:
     freedom: Freedom
     reads_rotation: bool
     forward_from: Program | None = None
+    twist: Program | None = None
+    compatible: Program | None = None
+    carried: Program | None = None
+    total_image: Program | None = None
     evidence: Evidence | None = None
+
+    @property
+    def shared(self) -> tuple[Program, ...]:
+        """The programs that several of these call: one that is called comes before the one that calls it."""
+        return shared(self.programs)
+
+    @property
+    def programs(self) -> tuple[Program, ...]:
+        """All programs but `setup`, without those that are shared."""
+        found = (
+            self.forward, self.forward_from, self.orientation, self.branch, self.limits, self.singularity, self.jacobian,
+            self.image, self.projection, self.offset_branch, self.offset_configuration,
+        )  # fmt: skip
+        return tuple(program for program in found if program is not None)
 
     @property
     def branches(self) -> tuple[Branch, ...]:

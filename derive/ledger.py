@@ -21,6 +21,7 @@ class Ledger:
         self._names: set[str] = set()
         self._slopes: list[Slope] = []
         self._measures: list[Measure] = []
+        self._residuals: list[sp.Expr] = []
 
     @property
     def statements(self) -> tuple[Statement, ...]:
@@ -37,6 +38,11 @@ class Ledger:
         """The partial steps so far."""
         return tuple(self._measures)
 
+    @property
+    def residuals(self) -> tuple[sp.Expr, ...]:
+        """What vanishes if the equations agree with each other."""
+        return tuple(self._residuals)
+
     def commit(self, binding: Binding) -> Binding:
         """Write a binding down; the answer is the same binding with the names that stand in the ledger."""
         names = self._write(binding.statements, keep={f(u) for u in binding.unknowns for f in (sine, cosine)})
@@ -46,12 +52,14 @@ class Ledger:
             measure=None
             if binding.measure is None
             else replace(binding.measure, value=binding.measure.value.xreplace(names)),
+            residual=None if binding.residual is None else binding.residual.xreplace(names),
             new_equations=tuple(
                 replace(e, expression=e.expression.xreplace(names), lets=()) for e in binding.new_equations
             ),
         )
         self._slopes += [binding.slope] if binding.slope is not None else []
         self._measures += [binding.measure] if binding.measure is not None else []
+        self._residuals += [binding.residual] if binding.residual is not None else []
         return binding
 
     def append(self, statements: Sequence[Statement]) -> None:

@@ -58,6 +58,7 @@ __all__ = [
     "Mechanism",
     "Parameter",
     "Rod",
+    "Search",
     "Role",
     "Task",
     "Turning",
@@ -70,6 +71,7 @@ __all__ = [
     "assembly",
     "bound",
     "branch",
+    "crossing",
     "coordinate",
     "coupling",
     "distance",
@@ -85,6 +87,7 @@ __all__ = [
     "radians",
     "rod",
     "rotary",
+    "search",
     "sign",
     "signed_length",
 ]
@@ -113,6 +116,19 @@ class Branch:
     signs: tuple[int, int]
     margin: str
     """What the singularity is called where its two solutions meet."""
+
+    @property
+    def is_crossing(self) -> bool:
+        """Whether it tells the roots of a search apart: its indicator is the slope of what is searched to vanish."""
+        return bool(self.indicator is sp.nan)
+
+
+@dataclass(frozen=True)
+class Search:
+    """A joint that is searched along where no subproblem determines it, because a parameter is not zero."""
+
+    joint: Joint
+    where: Parameter
 
 
 @dataclass(frozen=True)
@@ -144,6 +160,10 @@ class Rod:
     base: tuple[sp.Expr, ...]
     plate: tuple[sp.Expr, ...]
     length: sp.Expr
+    base_cone: sp.Expr | None = None
+    """The largest angle between the rod and its direction at the home pose, as its joint on the base sees it (radians)."""
+    plate_cone: sp.Expr | None = None
+    """The same, as its joint on the plate sees it."""
 
     @property
     def equation(self) -> sp.Expr:
@@ -185,13 +205,15 @@ class Turning(Enum):
     """The rotation is fixed or follows from the position: the commanded one is never read."""
     ABOUT_Z = "about z"
     """One turn about the machine's z: the commanded rotation is projected, tool direction first."""
+    DIRECTION = "direction"
+    """The direction of the tool, the z of the commanded rotation; the turn about it is passive."""
     FULL = "full"
     """The whole rotation."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is commanded: "xyz", or "xy" with z met; and how much of the rotation."""
+    """What is commanded: "xyz", "xy" with z met, or "" where a position kinematics is in front; and how much of the rotation."""
 
     position: str
     turning: Turning = Turning.NONE
@@ -218,6 +240,7 @@ class Mechanism:
     """Where an iterative forward kinematics starts: x, y, z, then roll, pitch and yaw in radians (Rz Ry Rx)."""
     bounds: tuple[Bound, ...] = ()
     branches: tuple[Branch, ...] = ()
+    search: Search | None = None
     positive: tuple[sp.Expr, ...] = ()
     """Quantities whose negative mirror solution the machine does not have."""
     limited: tuple[Limited, ...] = ()
@@ -244,6 +267,16 @@ class Mechanism:
         return self.chain is None and self.task.turning is Turning.FULL
 
     @property
+    def is_orientation(self) -> bool:
+        """Whether this is what a position kinematics carries: it turns the flange, and its position only follows."""
+        return self.chain is not None and not self.task.position
+
+    @property
+    def is_position(self) -> bool:
+        """Whether a position kinematics: it can carry an orientation kinematics, and follows no tool direction itself."""
+        return bool(self.task.position) and self.task.turning in (Turning.NONE, Turning.ABOUT_Z)
+
+    @property
     def equations(self) -> tuple[sp.Expr, ...]:
         """All stated closure equations."""
         return (*self.closure, *(rod.equation for rod in self.rods))
@@ -266,15 +299,32 @@ def branch(name: str, indicator: object, *, margin: str | None = None, **names: 
     return Branch(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin or name)
 
 
+def crossing(name: str, **names: int) -> Branch:
+    """The roots of a search told apart by whether what is searched to vanish rises or falls with the joint."""
+    return branch(name, sp.nan, margin=None, **names)
+
+
+def search(joint: Joint, *, where: Parameter) -> Search:
+    """Search along a joint where the parameter is not zero; where it is zero, the closure has a closed form."""
+    return Search(joint, where)
+
+
 def assembly(name: str, indicator: object, *, margin: str, handedness: object = 1, **names: int) -> Assembly:
     """Two assembly modes: `assembly("tcp", Y - KNEE_Y, margin="arms_aligned", below=-1, above=+1)`; the first is the default."""
     first, second = _two_names(f"assembly {name!r}", names)
     return Assembly(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin, sp.sympify(handedness))
 
 
-def rod(name: str, base: Sequence[object], plate: Sequence[object], length: object) -> Rod:
+def rod(
+    name: str,
+    base: Sequence[object],
+    plate: Sequence[object],
+    length: object,
+    base_cone: sp.Expr | None = None,
+    plate_cone: sp.Expr | None = None,
+) -> Rod:
     """A rigid rod between a point that joints move and a point of the plate."""
-    return Rod(name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length))
+    return Rod(name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone)
 
 
 def on_plate(x: object, y: object, z: object) -> tuple[sp.Expr, ...]:

@@ -9,14 +9,13 @@ It is done when the rods fit for the second time: the step between leaves roundi
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
 from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
 from derive.forward import Forward
-from derive.mechanism import Mechanism
-from derive.platform import (
+from derive.legs import (
     ANGLES,
     ASSEMBLY_SIGN,
     COORDINATES,
@@ -28,6 +27,7 @@ from derive.platform import (
     by_angles,
     length,
     names,
+    noted,
     of,
     point_of,
     row,
@@ -35,11 +35,16 @@ from derive.platform import (
     span,
     turned,
 )
+from derive.mechanism import Mechanism
+from derive.passes import assemble
 from derive.program import (
     CONVERGED,
     FREE_ANGLE,
+    Call,
     Iterate,
     Let,
+    Output,
+    Program,
     Require,
     Root,
     Select,
@@ -50,6 +55,8 @@ from derive.program import (
 )
 from derive.trigonometry import named_trigonometry
 
+SEARCH = "find_platform"
+"""The name of the program."""
 LIMIT = 20
 """Passes of the loop: from the neighbouring pose it takes four."""
 START_POSITION = tuple(real(f"start_{c}") for c in COORDINATES)
@@ -60,50 +67,61 @@ _TURN = tuple(real(f"turned_{r.name[1:]}") for r in ROTATION_ENTRIES)
 
 @dataclass(frozen=True)
 class Start:
-    """Where Newton's method starts: a pose, and the arms of the rods there."""
+    """Where Newton's method starts: a pose, and what it must satisfy."""
 
     statements: tuple[Statement, ...]
     position: tuple[sp.Expr, ...]
     rotation: tuple[sp.Symbol, ...]
-    arm: str
+    name: str
 
 
 def at_home(mechanism: Mechanism) -> Start:
     """Start at the machine's home pose."""
-    return Start((), mechanism.home[:3], HOME_ROTATION, "home_arm")
+    return Start((), mechanism.home[:3], HOME_ROTATION, "the home pose")
 
 
-def at_given(mechanism: Mechanism) -> Start:
+def at_given() -> Start:
     """Start at a given pose: inputs of the program."""
-    arms = (let for rod in mechanism.rods for let in turned(START_ROTATION, point_of(rod), names("start_arm", rod)))
     checks = (*finite([*START_POSITION, *START_ROTATION]), *is_rotation(START_ROTATION))
-    return Start((*checks, *arms), START_POSITION, START_ROTATION, "start_arm")
+    return Start(checks, START_POSITION, START_ROTATION, "the given start")
 
 
-def platform_pose(mechanism: Mechanism, start: Start) -> Forward:
-    """The pose of the platform at its axis values."""
+def found_from(mechanism: Mechanism, start: Start, search: Program) -> Forward:
+    """The pose of the platform at its axis values, and the rows of A there: found by the search that all programs share."""
+    axes = tuple((j.axis, j.axis) for j in mechanism.joints)
+    begin = zip((*START_POSITION, *START_ROTATION), (*start.position, *start.rotation), strict=True)
+    outputs = tuple(real(o.name) for o in search.outputs)
+    call = Call(search, (*axes, *begin), outputs, f"the platform on its rods, searched from {start.name}")
+    lets = (*joint_lets(mechanism), *_bases(mechanism)[0])
+    return Forward((*start.statements, *lets, call), POSITION, ROTATION_ENTRIES)
+
+
+def search_program(mechanism: Mechanism) -> Program:
+    """The pose of the platform at its axis values, from a start; with the rows of A there, and their determinant."""
+    outputs = [Output(n.name, n) for n in (*POSITION, *ROTATION_ENTRIES, DETERMINANT, *rows(mechanism))]
     positive = sp.And(*[sp.Gt(v, 0) for v in mechanism.positive])
     checks: tuple[Statement, ...] = (
         *finite([j.axis for j in mechanism.joints]),
         *joint_lets(mechanism),
         Require(positive, Status.IMPOSSIBLE, "the mirror that the machine does not have"),
     )
-    return Forward((*checks, *_newton(mechanism, start)), POSITION, ROTATION_ENTRIES)
+    search = assemble(SEARCH, (*checks, *_newton(mechanism)), outputs)
+    return replace(search, summary="The pose of the platform at its axis values, the rows of A there, and their determinant")
 
 
-def _newton(mechanism: Mechanism, start: Start) -> tuple[Statement, ...]:
+def _newton(mechanism: Mechanism) -> tuple[Statement, ...]:
     """The pose at given joints: position, rotation, and the rows of A there."""
     pose = (*POSITION, *map(real, ANGLES))
     within = real("within")
     bases = _bases(mechanism)
     fits = sp.And(*[sp.Le(sp.Abs(of("error", rod)), within) for rod in mechanism.rods])
     fit, fitted, half = real("fit"), real("fitted"), sp.Rational(1, 2)
-    rotation = sp.Matrix(3, 3, _TURN) * sp.Matrix(3, 3, list(start.rotation))
+    rotation = sp.Matrix(3, 3, _TURN) * sp.Matrix(3, 3, START_ROTATION)
     loop = Iterate(
         state=(*pose, fitted),
-        start=(*start.position, *[sp.Integer(0)] * 4),
+        start=(*START_POSITION, *[sp.Integer(0)] * 4),
         step=(
-            *_pass(mechanism, start, bases),
+            *_pass(mechanism, bases),
             Let(fit, Select(fits, sp.Integer(1), sp.Integer(0)), "whether the rods fit"),
             *_step(mechanism),
         ),
@@ -113,13 +131,14 @@ def _newton(mechanism: Mechanism, start: Start) -> tuple[Statement, ...]:
         otherwise=Status.IMPOSSIBLE,
         note="Newton's method: every pass improves the pose until the rods fit",
     )
+    arms = (let for rod in mechanism.rods for let in turned(START_ROTATION, point_of(rod), names("start_arm", rod)))
     return (
-        *start.statements,
+        *noted(arms, "the joints of the platform, from its origin, as it is turned at the start"),
         *bases[0],
         Let(within, CONVERGED * SCALE, "lengths that agree to this are equal"),
         loop,
         Require(sp.Gt(ASSEMBLY_SIGN * DETERMINANT, 0), Status.IMPOSSIBLE, "the other assembly mode"),
-        *(Let(n, v) for n, v in zip(ROTATION_ENTRIES, rotation, strict=True)),
+        *noted((Let(n, v) for n, v in zip(ROTATION_ENTRIES, rotation, strict=True)), "the start, and the turn away from it"),
     )
 
 
@@ -128,16 +147,17 @@ def _bases(mechanism: Mechanism) -> tuple[tuple[Let, ...], list[sp.Expr]]:
     return named_trigonometry(mechanism, [v for rod in mechanism.rods for v in (*rod.base, rod.length)])
 
 
-def _pass(mechanism: Mechanism, start: Start, bases: tuple[tuple[Let, ...], list[sp.Expr]]) -> tuple[Let, ...]:
+def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) -> tuple[Let, ...]:
     """The rods at the pose that the state is."""
     lets = [Let(real(f"{w}_{a}"), f(real(a))) for a in ANGLES for w, f in (("cos", sp.cos), ("sin", sp.sin))]
-    lets += [Let(n, v) for n, v in zip(_TURN, by_angles(), strict=True)]
+    turn = (Let(n, v) for n, v in zip(_TURN, by_angles(), strict=True))
+    lets += noted(turn, "the turn away from the start: Rz(yaw) Ry(pitch) Rx(roll)")
     for i, rod in enumerate(mechanism.rods):
         *base, wanted = bases[1][4 * i : 4 * i + 4]
         arm = names("arm", rod)
-        lets += turned(_TURN, names(start.arm, rod), arm)
+        lets += turned(_TURN, names("start_arm", rod), arm)
         lets += [*span(rod, POSITION, arm, base), length(rod), *row(rod, arm, of("length", rod))]
-        lets.append(Let(of("error", rod), of("length", rod) - wanted, f"by what rod {rod.name} would be too long"))
+        lets.append(Let(of("error", rod), of("length", rod) - wanted, f"by what leg {rod.name} would be too long"))
     return tuple(lets)
 
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 import sympy as sp
 
+from derive.legs import MIN_TYPE2_MARGIN as MIN_TYPE2_MARGIN
+from derive.legs import SCALE as SCALE
 from derive.mechanism import Joint, Mechanism, Parameter, Role
 from derive.passes import bare
-from derive.platform import MIN_TYPE2_MARGIN as MIN_TYPE2_MARGIN
-from derive.platform import SCALE as SCALE
 from derive.platform import machine_constants, machine_statements
 from derive.program import LARGEST, LIMIT, UNLIMITED, Let, Output, Program, Require, Select, Statement, Status, real
 from derive.verify import verify
@@ -83,7 +83,7 @@ def setup_program(mechanism: Mechanism, parameters: tuple[Parameter, ...], hoist
         outputs += _limit_outputs(quantity.name)
     if mechanism.is_platform:
         body += machine_statements(mechanism)
-        outputs += [Output(n.name, n) for n in machine_constants(mechanism)]
+        outputs += machine_constants(mechanism)
     else:
         body.append(Let(SCALE, machine_scale(parameters), "a length of the machine"))
         outputs.append(Output(SCALE.name, SCALE))

@@ -1,7 +1,7 @@
 """Passes over programs: fold aliases, order by need, hoist what depends on parameters alone.
 
 fold    Let(cos_s, cos_heading); … cos_s …                   →  … cos_heading …
-order   a Let stands just before its first use; one that nothing needs disappears
+order   a Let stands just before its first use; one that nothing needs disappears, and so does what a call need not bind
 hoist   Let(scale_a2, 2*link_length_1*link_length_2)         →  computed once, by `setup`
 """
 
@@ -14,6 +14,7 @@ import sympy as sp
 
 from derive.program import (
     DEGREE,
+    Call,
     Iterate,
     Let,
     Output,
@@ -72,7 +73,7 @@ def _renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> St
     if isinstance(statement, Iterate):
         step = tuple(s for s in (_renamed(s, name) for s in statement.step) if isinstance(s, Let | Solve))
         return replace(statement, state=tuple(map(name, statement.state)), step=step)
-    return statement
+    return replace(statement, names=tuple(map(name, statement.names))) if isinstance(statement, Call) else statement
 
 
 def _fold(
@@ -110,7 +111,9 @@ def _without_aliases(
 
 def _order(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[Statement, ...]:
     ordered = [_with_ordered_step(s) if isinstance(s, Iterate) else s for s in body]
-    return _needed(ordered, [o.value for o in outputs])
+    needed = _needed(ordered, [o.value for o in outputs])
+    read = {s for o in outputs for s in symbols_of(o.value)}.union(*map(reads, needed))
+    return tuple(replace(s, names=tuple(n for n in s.names if n in read)) if isinstance(s, Call) else s for s in needed)
 
 
 def _with_ordered_step(loop: Iterate) -> Iterate:
@@ -137,7 +140,7 @@ def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Stat
                 provide(source)
 
     for s in body:
-        if isinstance(s, Require | Iterate):
+        if isinstance(s, Require | Iterate | Call):
             provide(s)
     for value in wanted:
         need(symbols_of(value))
@@ -145,18 +148,21 @@ def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Stat
 
 
 def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
-    """The programs without the Lets that depend on constants alone, and these Lets, each value under one name."""
+    """The programs without the Lets that depend on constants alone, and these Lets, each value under one name.
+
+    A program that others call comes before them.
+    """
     known = set(constants)
     local = {name.name for p in programs for name in _varying(p, known)}
     by_value: dict[sp.Expr, sp.Symbol] = {}
     hoisted: list[Let] = []
-    lowered: list[Program] = []
+    lowered: dict[str, Program] = {}
     for program in programs:
         names: dict[sp.Symbol, sp.Symbol] = {}
         body: list[Statement] = []
         for s in program.body:
             if not isinstance(s, Let):
-                body.append(_with_names(s, names))
+                body.append(_with_names(_calling(s, lowered), names))
                 continue
             value = s.value.xreplace(names)
             if not {v.name for v in symbols_of(value)} <= known:
@@ -169,8 +175,13 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
                 hoisted.append(Let(name, value, s.note))
             names[s.name] = by_value[value]
         outputs = tuple(replace(o, value=o.value.xreplace(names)) for o in program.outputs)
-        lowered.append(replace(program, body=tuple(body), outputs=outputs))
-    return tuple(with_inputs(p) for p in lowered), tuple(hoisted)
+        lowered[program.name] = with_inputs(replace(program, body=tuple(body), outputs=outputs))
+    return tuple(lowered.values()), tuple(hoisted)
+
+
+def _calling(statement: Statement, programs: Mapping[str, Program]) -> Statement:
+    """The statement; a call of the program as it is now."""
+    return replace(statement, program=programs[statement.program.name]) if isinstance(statement, Call) else statement
 
 
 def _with_names(statement: Statement, names: Mapping[sp.Symbol, sp.Expr]) -> Statement:

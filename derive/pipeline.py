@@ -6,21 +6,20 @@ import time
 import traceback
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from derive.build import build
 from derive.catalogue import Entry
-from derive.emit import python, st
+from derive.emit import python
 from derive.emit.language import Language
+from derive.emit.st import StructuredTextFiles
 from derive.kinematics import Evidence, Kinematics
 from derive.mechanism import DescriptionError, Mechanism
-from derive.program import Program
 from derive.solve import Unsolved
 from derive.verify import BrokenProgram
 from derive.witness import Disagreement, witness
 
-LANGUAGES: tuple[Language, ...] = (python, st)
 PROCESSES = 2
 _EXPECTED = (DescriptionError, Unsolved, BrokenProgram, Disagreement)
 """What a wrong description leads to: the message says enough."""
@@ -41,8 +40,8 @@ class Built:
     @property
     def statements(self) -> int:
         """The statements of all programs."""
-        values = (getattr(self.kinematics, f.name) for f in fields(self.kinematics))
-        return sum(len(v.body) for v in values if isinstance(v, Program))
+        kinematics = self.kinematics
+        return sum(len(p.body) for p in (kinematics.setup, *kinematics.shared, *kinematics.programs))
 
 
 def derive_all(entries: Sequence[Entry]) -> Iterator[Built]:
@@ -63,12 +62,23 @@ def derive_one(mechanism: Mechanism) -> Built:
     return Built(replace(kinematics, evidence=evidence), evidence, time.perf_counter() - start)
 
 
-def render_all(built: Sequence[Built]) -> dict[str, str]:
+def languages(profile: str | None = None) -> tuple[Language, ...]:
+    """All output languages, for a profile of the SoftMotion contract (its own if `None`).
+
+    Raises `GenerationError` for a profile that the contract has not.
+    """
+    try:
+        return python, StructuredTextFiles(profile)
+    except ValueError as problem:
+        raise GenerationError(str(problem)) from None
+
+
+def render_all(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, str]:
     """All generated files: path below the output folder → text."""
     kinematics = tuple(b.kinematics for b in built)
     return {
         str(Path(language.name) / name): text
-        for language in LANGUAGES
+        for language in outputs
         for name, text in sorted(language.render(kinematics).items())
     }
 

@@ -1,8 +1,6 @@
-"""A platform on rods that moves with its whole pose: its legs, its home pose, and the margin of its singularity.
+"""A platform on rods that moves with its whole pose: its home pose, what the inverse refuses, and its singularity.
 
-Rod i holds the plate by e = |span| - length. With a the arm from the frame of the plate to the rod's joint and u the unit
-vector along the rod, e' = [u, a x u] (v, w): these rows are A. Moments are divided by the platform's radius, so that
-det A is a number without a unit; it is zero where the rods lie in one linear complex (type 2).
+det A (see `legs`) is the margin: it is zero where the rods lie in one linear complex (type 2).
 """
 
 from __future__ import annotations
@@ -11,8 +9,30 @@ from collections.abc import Sequence
 
 import sympy as sp
 
+from derive.cones import cone_axes, cone_checks, cone_constants
 from derive.edges import ROTATION_ENTRIES
-from derive.mechanism import DescriptionError, Mechanism, Rod, on_plate
+from derive.legs import (
+    ANGLES,
+    ASSEMBLY_SIGN,
+    COORDINATES,
+    DETERMINANT,
+    HOME_ROTATION,
+    MARGIN,
+    MIN_TYPE2_MARGIN,
+    POSITION,
+    RADIUS,
+    SCALE,
+    by_angles,
+    length,
+    names,
+    of,
+    point_of,
+    row,
+    rows,
+    span,
+    turned,
+)
+from derive.mechanism import DescriptionError, Mechanism, Rod
 from derive.passes import assemble
 from derive.program import (
     FREE_ANGLE,
@@ -29,83 +49,6 @@ from derive.program import (
     Status,
     real,
 )
-
-ASSEMBLY_SIGN = real("assembly_sign")
-"""The sign of det A at the home pose: the assembly mode of the machine."""
-SCALE = real("machine_scale")
-"""A length of the machine: the sum of its lengths, or one user's unit where it has none; the mean leg of a platform."""
-MIN_TYPE2_MARGIN = "min_type2_margin"
-DETERMINANT = real("determinant")
-RADIUS = real("platform_radius")
-MARGIN = "rods_dependent"
-COORDINATES = ("x", "y", "z")
-POSITION = tuple(map(real, COORDINATES))
-ANGLES = ("roll", "pitch", "yaw")
-HOME_ROTATION = tuple(real(f"home_{r.name}") for r in ROTATION_ENTRIES)
-
-Vector = tuple[sp.Expr, ...]
-
-
-def names(word: str, rod: Rod) -> tuple[sp.Symbol, ...]:
-    """The names of a vector that belongs to a rod: `span_1_x` and so on."""
-    return tuple(real(f"{word}_{rod.name}_{c}") for c in COORDINATES)
-
-
-def of(word: str, rod: Rod) -> sp.Symbol:
-    """The name of a number that belongs to a rod: `length_1`."""
-    return real(f"{word}_{rod.name}")
-
-
-def point_of(rod: Rod) -> Vector:
-    """The rod's joint in the frame of the plate."""
-    point = tuple(sp.diff(rod.plate[0], entry) for entry in ROTATION_ENTRIES[:3])
-    if any(sp.expand(a - b) != 0 for a, b in zip(rod.plate, on_plate(*point), strict=True)):
-        raise DescriptionError(f"rod {rod.name!r}: its end must be a point of the plate")
-    return point
-
-
-def turned(rotation: Sequence[sp.Expr], point: Sequence[sp.Expr], called: Sequence[sp.Symbol]) -> tuple[Let, ...]:
-    """A point turned by a rotation given by rows."""
-    matrix = sp.Matrix(3, 3, list(rotation))
-    return tuple(Let(n, v) for n, v in zip(called, matrix * sp.Matrix(list(point)), strict=True))
-
-
-def by_angles(words: Sequence[str] = ANGLES) -> sp.Matrix:
-    """Rz(yaw) Ry(pitch) Rx(roll), by the names of the cosines and sines."""
-    (cr, cp, cy), (sr, sp_, sy) = (tuple(real(f"{f}_{w}") for w in words) for f in ("cos", "sin"))
-    return sp.Matrix(
-        [
-            [cy * cp, cy * sp_ * sr - sy * cr, cy * sp_ * cr + sy * sr],
-            [sy * cp, sy * sp_ * sr + cy * cr, sy * sp_ * cr - cy * sr],
-            [-sp_, cp * sr, cp * cr],
-        ]
-    )
-
-
-def span(rod: Rod, position: Sequence[sp.Expr], arm: Sequence[sp.Expr], base: Sequence[sp.Expr]) -> tuple[Let, ...]:
-    """From the joint on the base to the joint on the plate."""
-    return tuple(Let(n, p + a - b) for n, p, a, b in zip(names("span", rod), position, arm, base, strict=True))
-
-
-def length(rod: Rod) -> Let:
-    """The length of the span."""
-    return Let(of("length", rod), Root(sp.Add(*[c**2 for c in names("span", rod)])))
-
-
-def row(rod: Rod, arm: Sequence[sp.Expr], measured: sp.Expr) -> tuple[Let, ...]:
-    """A row of A: the direction of a span of known length, and its moment about the frame of the plate."""
-    along, divisor = names("along", rod), of("divisor", rod)
-    moment = sp.Matrix(list(arm)).cross(sp.Matrix(along)) / RADIUS
-    return (
-        Let(divisor, Select(sp.Gt(measured, SHORTEST_LINK * SCALE), measured, sp.Integer(1))),
-        *(Let(a, s / divisor) for a, s in zip(along, names("span", rod), strict=True)),
-        *(Let(n, v) for n, v in zip(names("moment", rod), moment, strict=True)),
-    )
-
-
-def rows(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
-    """A, by rows."""
-    return tuple(entry for rod in mechanism.rods for word in ("along", "moment") for entry in names(word, rod))
 
 
 def machine_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
@@ -150,16 +93,17 @@ def _at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
         Let(SCALE, sp.Add(*lengths) / len(lengths) + RADIUS, "a length of the machine: the mean leg and the platform"),
         Require(apart, Status.NOT_INITIALIZED, "legs that have a length at the home pose, and joints that are apart"),
         *(let for rod, arm in zip(rods, arms, strict=True) for let in row(rod, arm, of("length", rod))),
+        *cone_axes(mechanism, HOME_ROTATION),
         Solve((), rows(mechanism), (), DETERMINANT, "the legs at the home pose: zero where they do not hold the platform"),
         Require(sp.Gt(sp.Abs(DETERMINANT), SINGULAR), Status.NOT_INITIALIZED, "a home pose at which the legs hold the platform"),
         Let(ASSEMBLY_SIGN, Select(sp.Gt(DETERMINANT, 0), sp.Integer(1), sp.Integer(-1)), "assembly mode of this machine"),
     )
 
 
-def machine_constants(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+def machine_constants(mechanism: Mechanism) -> tuple[Output, ...]:
     """Those of these names that other programs may read."""
-    arms = (n for rod in mechanism.rods for n in names("home_arm", rod))
-    return (*HOME_ROTATION, *arms, RADIUS, SCALE, ASSEMBLY_SIGN)
+    own = (Output(n.name, n) for n in (*HOME_ROTATION, RADIUS, SCALE, ASSEMBLY_SIGN))
+    return (*own, *cone_constants(mechanism))
 
 
 def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[Statement, ...]:
@@ -175,6 +119,7 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
     return (
         *lets,
         Require(long_enough, Status.UNREACHABLE, "a leg without length has no direction"),
+        *cone_checks(mechanism),
         Solve((), rows(mechanism), (), DETERMINANT, "margin of the platform"),
         Require(margin, Status.UNREACHABLE, f"{MARGIN}: the other assembly mode, or too near to losing the plate"),
     )

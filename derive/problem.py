@@ -63,6 +63,8 @@ class Binding:
     slope: Slope | None = None
     measure: Measure | None = None
     new_equations: tuple[Equation, ...] = ()
+    residual: sp.Expr | None = None
+    """What vanishes if the equations it was solved from agree with each other, a square of a length."""
     cosine_alone: bool = False
 
     @property
@@ -90,10 +92,14 @@ class Problem:
     """Normal forms of the quantities whose negative mirror is excluded."""
     pending: tuple[sp.Symbol, ...] = ()
     """Angles that follow from a sum once its other terms are known: unknown, but nothing to solve for."""
+    is_overdetermined: bool = False
+    """Whether there is an equation too many, so that what is left over is a residual: two-root steps must not use it up."""
     turns: tuple[Factor, ...] = ()
     """The turns that the commanded rotation is the product of, for equations that are written when angles are known."""
     rotation: tuple[sp.Symbol, ...] = ()
     """The entries of the commanded rotation, by rows; none where it is not commanded."""
+    columns: tuple[int, ...] = (0, 1, 2)
+    """The columns of the commanded rotation that are followed."""
     definitions: Mapping[sp.Symbol, sp.Expr] | None = None
     """What known names stand for, as far as they are polynomials: for tests of zero."""
 

@@ -11,7 +11,7 @@ user's length unit. `DEGREE` (pi/180) is the one conversion.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import isqrt
@@ -39,10 +39,14 @@ LIMIT = sp.Float("1e-9")
 """Relative tolerance of an axis limit."""
 SHORTEST_LINK = sp.Float("1e-9")
 """An effective link shorter than this fraction of the machine's scale cannot be aimed."""
+HELD = sp.Float("1e-9")
+"""A shift up to this size (the user's unit) may turn with a flange unnoticed; and axes this far apart are one."""
 SINGULAR = sp.Float("1e-3")
 """A pose is singular where a margin is smaller than this in size."""
 PIVOT = sp.Float("1e-14")
 """A matrix is singular where no pivot is larger than this share of its largest entry."""
+SOLVABLE = sp.Float("1e30")
+"""Linear equations are solved where all their numbers are at most this size, and the largest at least its reciprocal."""
 CONVERGED = sp.Float("1e-11")
 """An iteration has converged where what is left of a length is at most this share of the machine's scale."""
 TIE = sp.Float("1e-6")
@@ -83,7 +87,9 @@ class Select(sp.Function):
 
     @classmethod
     def eval(cls, condition: Boolean, first: sp.Expr, second: sp.Expr) -> sp.Expr | None:
-        """A choice between equals is none."""
+        """A choice between equals is none, nor one that is decided."""
+        if condition in (sp.true, sp.false):
+            return first if condition == sp.true else second
         return first if first == second else None
 
 
@@ -135,7 +141,9 @@ class Require:
 
 @dataclass(frozen=True)
 class Solve:
-    """Bind `names` to matrix^-1 right, by LU decomposition with partial pivoting. Total: a singular matrix gives zeros.
+    """Bind `names` to matrix^-1 right, by LU decomposition with partial pivoting.
+
+    Total: the determinant and the solution are zeros where the matrix is singular, or a number is none or beyond `SOLVABLE`.
 
     All three by rows: the matrix is square, `names` and `right` have as many columns as there are right-hand sides,
     which may be none where the determinant alone is wanted.
@@ -177,7 +185,33 @@ class Iterate:
     note: str = ""
 
 
-Statement = Let | Require | Solve | Iterate
+@dataclass(frozen=True)
+class Call:
+    """Run a program that several programs share, and bind names of its outputs; where it refuses, so does the caller.
+
+    `given` are the values of its arguments. What else it reads is a constant of the machine: an input of the caller, too.
+    """
+
+    program: Program
+    given: tuple[tuple[sp.Symbol, sp.Expr], ...]
+    names: tuple[sp.Symbol, ...]
+    """The outputs that the caller reads: the values of the others are dropped."""
+    note: str = ""
+
+    @property
+    def arguments(self) -> tuple[sp.Expr, ...]:
+        """The values of the arguments, in the order of the shared program's inputs."""
+        values = dict(self.given)
+        return tuple(values[s] for s in self.program.inputs if s in values)
+
+    @property
+    def constants(self) -> tuple[sp.Symbol, ...]:
+        """What the shared program reads besides its arguments."""
+        arguments = {name for name, _ in self.given}
+        return tuple(s for s in self.program.inputs if s not in arguments)
+
+
+Statement = Let | Require | Solve | Iterate | Call
 
 
 @dataclass(frozen=True)
@@ -196,6 +230,8 @@ class Program:
     inputs: tuple[sp.Symbol, ...]
     body: tuple[Statement, ...]
     outputs: tuple[Output, ...]
+    summary: str = ""
+    """What it does, where its name does not say it: of a shared program."""
 
     def lets(self) -> tuple[Let, ...]:
         """The bindings, in order."""
@@ -237,7 +273,7 @@ def binds(statement: Statement) -> tuple[sp.Symbol, ...]:
         return statement.names + (() if statement.determinant is None else (statement.determinant,))
     if isinstance(statement, Iterate):
         return (*statement.state, *(name for s in statement.step for name in binds(s)))
-    return ()
+    return statement.names if isinstance(statement, Call) else ()
 
 
 def expressions(statement: Statement) -> Iterator[sp.Basic]:
@@ -248,6 +284,8 @@ def expressions(statement: Statement) -> Iterator[sp.Basic]:
         yield statement.condition
     elif isinstance(statement, Solve):
         yield from (*statement.matrix, *statement.right)
+    elif isinstance(statement, Call):
+        yield from (value for _, value in statement.given)
     else:
         yield from statement.start
         for inner in statement.step:
@@ -258,7 +296,17 @@ def expressions(statement: Statement) -> Iterator[sp.Basic]:
 def reads(statement: Statement) -> set[sp.Symbol]:
     """The symbols a statement reads and does not bind itself."""
     found = {s for e in expressions(statement) for s in symbols_of(e)}
+    if isinstance(statement, Call):
+        return found | set(statement.constants)
     return found - set(binds(statement)) if isinstance(statement, Iterate) else found
+
+
+def shared(programs: Iterable[Program]) -> tuple[Program, ...]:
+    """The programs that these call, each once, and before those that call it."""
+    found: dict[str, Program] = {}
+    for call in (s for program in programs for s in program.body if isinstance(s, Call)):
+        found |= {inner.name: inner for inner in (*shared([call.program]), call.program)}
+    return tuple(found.values())
 
 
 def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> Statement:
@@ -269,6 +317,8 @@ def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> S
         return replace(statement, condition=change(statement.condition))
     if isinstance(statement, Solve):
         return replace(statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right)))
+    if isinstance(statement, Call):
+        return replace(statement, given=tuple((name, change(value)) for name, value in statement.given))
     return replace(
         statement,
         start=tuple(map(change, statement.start)),

@@ -13,7 +13,9 @@ from derive.program import (
     DEGREE,
     EDGE,
     PIVOT,
+    SOLVABLE,
     Atan2,
+    Call,
     Iterate,
     Let,
     NearestOnArc,
@@ -94,6 +96,8 @@ def _execute(statements: Iterable[Statement], known: dict[str, Array], status: N
             _require(evaluate(statement.condition, known), statement.otherwise, status)
         elif isinstance(statement, Solve):
             _solve(statement, known, status.shape)
+        elif isinstance(statement, Call):
+            _call(statement, known, status)
         else:
             _iterate(statement, known, status)
 
@@ -101,6 +105,15 @@ def _execute(statements: Iterable[Statement], known: dict[str, Array], status: N
 def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -> None:
     fails = np.logical_not(np.broadcast_to(condition, status.shape))
     status[fails & (status == Status.OK)] = otherwise
+
+
+def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> None:
+    """The shared program sees its arguments and constants alone; a row that it refuses has its status."""
+    inner = {s.name: known[s.name] for s in call.constants}
+    inner |= {name.name: evaluate(value, known) for name, value in call.given}
+    _execute(call.program.body, inner, status)
+    outputs = {o.name: o.value for o in call.program.outputs}
+    known.update({name.name: evaluate(outputs[name.name], inner) for name in call.names})
 
 
 def _iterate(loop: Iterate, known: dict[str, Array], status: NDArray[np.object_]) -> None:
@@ -129,10 +142,12 @@ def _solve(system: Solve, known: dict[str, Array], shape: tuple[int, ...]) -> No
 
 
 def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
-    """Determinant and solution by LU decomposition with partial pivoting: rows, columns, then any shape. Singular: zeros."""
+    """Determinant and solution by LU decomposition with partial pivoting: rows, columns, then any shape. Unsolvable: zeros."""
     matrix, right, size = matrix.copy(), right.copy(), len(matrix)
-    tiny = float(PIVOT) * np.max(np.abs(matrix), axis=(0, 1))
-    determinant, regular = np.ones(matrix.shape[2:]), np.ones(matrix.shape[2:], dtype=bool)
+    largest, most = np.max(np.abs(matrix), axis=(0, 1)), float(SOLVABLE)
+    tiny = float(PIVOT) * largest
+    regular = (largest >= 1.0 / most) & (largest <= most) & np.all(np.abs(right) <= most, axis=(0, 1))
+    determinant = np.ones(matrix.shape[2:])
     for k in range(size):
         best = k + np.argmax(np.abs(matrix[k:, k]), axis=0)
         for table in (matrix, right):

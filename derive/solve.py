@@ -50,6 +50,8 @@ class Derivation:
     measures: tuple[Measure, ...]
     rules: tuple[str, ...]
     sums: tuple[Sum, ...] = ()
+    residuals: tuple[sp.Expr, ...] = ()
+    """What vanishes if the equations agree with each other: identically, where none was left over."""
 
 
 def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:
@@ -72,7 +74,7 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
                 ledger.append(resolve_angle(angle))
         problem = _without(problem, binding, ledger)
     statements = within_reach(ledger.statements, ledger.slopes, ledger.measures)
-    return Derivation(statements, ledger.slopes, ledger.measures, tuple(rules), sums)
+    return Derivation(statements, ledger.slopes, ledger.measures, tuple(rules), sums, ledger.residuals)
 
 
 def _next(
@@ -82,12 +84,13 @@ def _next(
         binding = resolve(problem, total) if total.replaced in problem.pending else None
         if binding is not None:
             return problem, binding, sums
-    found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
+    tiers = TIERS[:-1] if problem.is_overdetermined else TIERS
+    found = _best(candidate for tier in tiers for candidate in [_candidates(problem, tier(problem))])
     if found is not None:
         return problem, found, sums
     for total in candidate_sums(problem, arguments):
         trial = substitute(problem, total)
-        found = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in TIERS)
+        found = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in tiers)
         if found is not None:
             return trial, found, (*sums, total)
     raise Unsolved(_message(problem))

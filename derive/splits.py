@@ -39,6 +39,14 @@ class Target:
 
 
 @dataclass(frozen=True)
+class Commanded:
+    """The commanded rotation, and which of its columns are followed."""
+
+    rotation: sp.Matrix
+    columns: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class Unknowns:
     """What the equations of a chain are to be solved for, and what their normal form needs."""
 
@@ -58,22 +66,19 @@ class Unknowns:
         return angles | (set(self.lengths) & present)
 
 
-def split_positions(chain: Chain, rotation: sp.Matrix | None, unknowns: Unknowns) -> tuple[Equation, ...]:
-    """The position equations of a chain, at the split that leaves some unknown alone, else those of the whole chain.
-
-    `rotation`: the commanded one where it is, else None.
-    """
+def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> tuple[Equation, ...]:
+    """The position equations of a chain, at the split that leaves some unknown alone, else those of the whole chain."""
     point = [real(c) for c in COORDINATES]
     factors, target = chain.factors, Target(tuple(point))
-    if rotation is not None:
-        factors, target = _behind_the_wrist(chain, sp.Matrix(point), rotation, unknowns)
+    if commanded.columns:
+        factors, target = _behind_the_wrist(chain, sp.Matrix(point), commanded, unknowns)
     first = next(i for i, f in enumerate(factors) if f.amount.free_symbols & {*unknowns.angles, *unknowns.lengths})
     whole, behind = _equations(factors, -1, target, unknowns), _equations(factors, first, target, unknowns)
     return behind if any(len(unknowns.of(e.expression)) == 1 for e in behind) else whole
 
 
 def _behind_the_wrist(
-    chain: Chain, point: sp.Matrix, rotation: sp.Matrix, unknowns: Unknowns
+    chain: Chain, point: sp.Matrix, commanded: Commanded, unknowns: Unknowns
 ) -> tuple[tuple[Factor, ...], Target]:
     """The part of the chain to the point that the commanded pose fixes and the fewest joints move."""
     best, target = chain.factors, Target(tuple(point))
@@ -81,11 +86,11 @@ def _behind_the_wrist(
     for cut in reversed([i for i, f in enumerate(chain.factors) if f.motion is Motion.TURN]):
         rest = pose_of(Chain(chain.factors[cut:]))
         seen = [unknowns.form(v) for v in -(rest.rotation.T * rest.position)]
-        if any(unknowns.of(v) for v in seen):
-            break  # its place in the flange is no longer fixed
+        if any(unknowns.of(v) for v in seen) or any(v != 0 for i, v in enumerate(seen) if i not in commanded.columns):
+            break  # its place in what is commanded of the flange is no longer fixed
         front = Chain(chain.factors[:cut])
         if len(_movers(front, unknowns)) < fewest:
-            best, target, fewest = front.factors, _wrist(point, rotation, seen), len(_movers(front, unknowns))
+            best, target, fewest = front.factors, _wrist(point, commanded.rotation, seen), len(_movers(front, unknowns))
     return best, target
 
 
@@ -140,7 +145,7 @@ def rotations(problem: Problem) -> tuple[Equation, ...]:
         front += _word(problem, turn)
         entries = _named(problem, _matrix(problem, turn, lets).T * entries, _suffix("from", front), lets)
     back: list[str] = []
-    while not _unknown(problem, turns[-1]):
+    while len(problem.columns) == 3 and not _unknown(problem, turns[-1]):
         turn = turns.pop()
         back = _word(problem, turn) + back
         word = _suffix("from", front) + _suffix("before", back)
@@ -154,7 +159,7 @@ def _entry_equations(
     middle = pose_of(Chain(tuple(turns))).rotation
     found = []
     for i in range(3):
-        for j in range(3):
+        for j in problem.columns:
             if len({a for a in problem.angles if a in middle[i, j].free_symbols}) > _MOST_UNKNOWN:
                 continue
             if any(a in middle[i, j].free_symbols for a in problem.pending):

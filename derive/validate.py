@@ -43,7 +43,7 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
     for name in (mechanism.name, *mechanism.aliases):
         if not _BLOCK.match(name):
             yield f"{name!r} cannot name a function block"
-    if not mechanism.joints:
+    if not mechanism.joints and (mechanism.task.position or mechanism.task.turning is not Turning.NONE):
         yield "the mechanism has no joints"
     for kind, names in (
         ("joint", [j.name for j in mechanism.joints]),
@@ -113,8 +113,13 @@ def _periods(mechanism: Mechanism) -> Iterator[str]:
 def _shape(mechanism: Mechanism) -> Iterator[str]:
     if (mechanism.chain is None) == (not mechanism.equations):
         yield "the mechanism needs either a chain or closure equations"
-    if mechanism.task.position not in ("xy", "xyz"):
-        yield f"the task commands {mechanism.task.position!r}: it must be 'xy' or 'xyz'"
+    if mechanism.task.position not in ("xy", "xyz") and not mechanism.is_orientation:
+        yield f"the task commands {mechanism.task.position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
+    cones = [cone for rod in mechanism.rods for cone in (rod.base_cone, rod.plate_cone) if cone is not None]
+    if cones and not mechanism.home:
+        yield "a cone of a rod's joint is about the rod at the home pose, and the mechanism has none"
+    for cone in cones:
+        yield from _unknown("a cone of a rod's joint", cone, _parameters(mechanism), "a parameter of this mechanism")
     used = {s for _, e in _equations(mechanism) for s in e.free_symbols}
     for joint in mechanism.joints:
         if joint.symbol not in used:
@@ -143,7 +148,7 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
     for place, expression in named:
         yield from _unknown(place, expression, known, "a joint or a parameter of this mechanism")
     for branch in mechanism.branches:
-        if not joints & branch.indicator.free_symbols:
+        if not branch.is_crossing and not joints & branch.indicator.free_symbols:
             yield f"branch {branch.name!r}: its indicator {branch.indicator} depends on no joint"
 
 

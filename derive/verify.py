@@ -6,7 +6,7 @@ import re
 
 import sympy as sp
 
-from derive.program import DEGREE, PRIMITIVES, Iterate, Program, Solve, Statement, binds, expressions, symbols_of
+from derive.program import DEGREE, PRIMITIVES, Call, Iterate, Program, Solve, Statement, binds, expressions, symbols_of
 
 _PORTABLE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 _ARITHMETIC = (sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Rational, sp.Float, sp.Integer)
@@ -39,9 +39,22 @@ def _check_statement(program: Program, statement: Statement, bound: set[str]) ->
         sizes = statement.size**2, statement.size * statement.columns, len(statement.right)
         if sizes != (len(statement.matrix), len(statement.right), len(statement.names)):
             raise BrokenProgram(f"{program.name}: the matrix, the right-hand sides and the names do not fit together")
+    if isinstance(statement, Call):
+        _check_call(program, statement)
     for value in expressions(statement):
         _check_expression(program, value, bound)
     bound |= {name.name for name in binds(statement)}
+
+
+def _check_call(program: Program, call: Call) -> None:
+    """The names of a call are those of the shared program, whose constants no statement of the caller binds."""
+    outputs, arguments = {o.name for o in call.program.outputs}, [name for name, _ in call.given]
+    if strangers := [n.name for n in call.names if n.name not in outputs]:
+        raise BrokenProgram(f"{program.name}: {call.program.name} has no output {strangers[0]!r}")
+    if strangers := [n.name for n in arguments if n not in call.program.inputs]:
+        raise BrokenProgram(f"{program.name}: {call.program.name} does not read {strangers[0]!r}")
+    if unbound := [s.name for s in call.constants if s not in program.inputs]:
+        raise BrokenProgram(f"{program.name}: {call.program.name} reads {unbound[0]!r}, which is neither given nor an input")
 
 
 def _check_loop(program: Program, loop: Iterate, bound: set[str]) -> None:

@@ -11,35 +11,39 @@ from derive.emit import python_entries as entries
 from derive.emit import python_setup as setup
 from derive.emit.language import GENERATED, environment
 from derive.emit.python_layout import WIDTH, fold
-from derive.emit.python_methods import branch, forwards, limits, methods
+from derive.emit.python_methods import branch, carried, forwards, limits, methods, shared
 from derive.emit.python_printer import ARRAY_NAMES, literal
 from derive.emit.python_program import Method, array_body, functions, has_loop, scalar_body
 from derive.kinematics import Kinematics
-from derive.program import EDGE, FREE_ANGLE, LARGEST, PIVOT, SINGULAR, TIE, Status
+from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, SINGULAR, SOLVABLE, TIE, Status
 
 name = "python"
 
 _FIXED = (
     "pyproject.toml",
     "softkin/_array.py",
+    "softkin/_array_coupled.py",
     "softkin/_array_programs/__init__.py",
     "softkin/_batch.py",
     "softkin/_configuration.py",
     "softkin/_core.py",
+    "softkin/_coupled.py",
     "softkin/_input.py",
     "softkin/_offset.py",
+    "softkin/_orientation.py",
     "softkin/_scalar.py",
     "softkin/_start.py",
     "softkin/_table.py",
     "softkin/_twist.py",
     "softkin/_types.py",
+    "softkin/_vectors.py",
     "softkin/py.typed",
 )
 """Files that are the same whatever the mechanisms are."""
 _INDEXED = ("README.md", "softkin/__init__.py")
 """Files that list the mechanisms."""
 _EXPORTS = (
-    "Axis", "ConfigurationByte", "Frame", "KinematicsError", "Mechanism", "OrientationImage", "Parameter",
+    "Axis", "ConfigurationByte", "Coupled", "Frame", "KinematicsError", "Mechanism", "OrientationImage", "Parameter",
     "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
 _ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Vector", "passed", "require")
@@ -76,10 +80,12 @@ def _templates() -> Environment:
         "statuses": [{"name": s.name, "softmotion": s.value, "meaning": _MEANINGS[s]} for s in Status],
         "chunk": _CHUNK,
         "edge": literal(float(EDGE)),
+        "held": literal(float(HELD)),
         "free_angle": literal(float(FREE_ANGLE)),
         "largest": literal(float(LARGEST)),
         "pivot": literal(float(PIVOT)),
         "singular": literal(float(SINGULAR)),
+        "solvable": literal(float(SOLVABLE)),
         "tie": literal(float(TIE)),
     }
     return templates
@@ -99,8 +105,8 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     """The class of a mechanism, and its programs on arrays."""
     names = _index(kin)
     scalar = methods(kin)
-    arrays = [*forwards(kin), branch(kin), limits(kin)]
-    array_programs = "Programs" if kin.forward_from is None else "StartedPrograms"
+    arrays = [*shared(kin), *forwards(kin), branch(kin), limits(kin), *carried(kin)]
+    array_programs = _array_programs(kin)
     array_types = _ARRAY_TYPES + (("advanced", "initial", "settled") if any(has_loop(m.program) for m in arrays) else ())
     programs = tuple(m.program for m in scalar) + (kin.setup,)
     context = {
@@ -128,6 +134,13 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     }
 
 
+def _array_programs(kin: Kinematics) -> str:
+    """What the programs on arrays are, by what they offer."""
+    if kin.mechanism.is_orientation:
+        return "OrientationPrograms"
+    return "Programs" if kin.forward_from is None else "StartedPrograms"
+
+
 def _array_functions(arrays: Sequence[Method]) -> set[str]:
     return {ARRAY_NAMES.get(f, f) for f in functions(tuple(m.program for m in arrays))}
 
@@ -135,6 +148,7 @@ def _array_functions(arrays: Sequence[Method]) -> set[str]:
 def _bases(kin: Kinematics) -> dict[str, str]:
     """The base classes by the module they are in: what the mechanism offers beyond the calls that all have."""
     found = {"_offset": "OffsetKinematics"} if kin.offset_branch is not None else {}
+    found |= {"_orientation": "OrientationKinematics"} if kin.mechanism.is_orientation else {}
     found |= {"_start": "IterativeForward"} if kin.forward_from is not None else {}
     found |= {"_twist": "TwistChoice"} if kin.chooses_twist else {}
     return found or {"_core": "Mechanism"}
@@ -143,7 +157,7 @@ def _bases(kin: Kinematics) -> dict[str, str]:
 def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
     kinds = {m.kind for m in used if m.kind} | {a.kind for m in used for a in m.arguments}
     bytes_ = {"ConfigurationByte"} if kin.configuration_size else set()
-    return _sorted(kinds - {"Pose", "Image"} | {"Axis", "Parameter", "Status"} | bytes_)
+    return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Axis", "Parameter", "Status"} | bytes_)
 
 
 def _head(method: Method, prefix: str) -> list[str]:
@@ -154,6 +168,8 @@ def _head(method: Method, prefix: str) -> list[str]:
 
 def _array_head(method: Method) -> list[str]:
     arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
+    if method.is_shared:
+        return fold(f"def {method.name}(self{arguments}, status: Codes) -> {method.kind}:", 4)
     kind = "tuple[Vector, Rotation, Reals]" if method.kind == "Pose" else method.kind
     result = f"tuple[{kind}, Codes]" if kind else "Codes"
     return fold(f"def {method.name}(self{arguments}) -> {result}:", 4)

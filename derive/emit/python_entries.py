@@ -6,16 +6,22 @@ from collections.abc import Iterable, Sequence
 
 from derive.emit.python_layout import fold
 from derive.kinematics import Kinematics
+from derive.mechanism import Mechanism
 
 
 def class_name(name: str, better: str | None) -> str:
     """`Kin_Scara4_ZCcoupled_Type1` → `Scara4ZCcoupledType1`."""
-    return better or "".join(word[:1].upper() + word[1:] for word in name.removeprefix("Kin_").split("_"))
+    return better or "".join(word[:1].upper() + word[1:] for word in _short(name).split("_"))
 
 
 def module_name(name: str) -> str:
     """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`."""
-    return name.removeprefix("Kin_").lower()
+    return _short(name).lower()
+
+
+def role(mechanism: Mechanism) -> str:
+    """What a mechanism is in a coupling."""
+    return "position" if mechanism.is_position else "orientation" if mechanism.is_orientation else "complete"
 
 
 def axes(kin: Kinematics) -> list[str]:
@@ -66,6 +72,12 @@ def literal(value: object) -> str:
     if isinstance(value, tuple):
         return f"({', '.join(map(literal, value))}{',' if len(value) == 1 else ''})"
     return repr(value)
+
+
+def _short(name: str) -> str:
+    """Without the prefix, unless what is left is no name: `Kin_5Axes`."""
+    short = name.removeprefix("Kin_")
+    return short if short.isidentifier() else name
 
 
 def _call(constructor: str, **values: object) -> str:

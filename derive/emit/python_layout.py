@@ -38,6 +38,14 @@ def packed(pieces: list[str]) -> list[str]:
     return _packed(pieces, WIDTH - 8)
 
 
+def taken_apart(targets: list[str], source: str) -> list[str]:
+    """`a, b, c = source`, in as many lines as it takes."""
+    line = f"{', '.join(targets)} = {source}" if len(targets) > 1 else f"({targets[0]},) = {source}"
+    if len(line) <= WIDTH:
+        return [line]
+    return ["(", *(f"    {part}" for part in packed([f"{t}," for t in targets])), f") = {source}"]
+
+
 def _packed(pieces: list[str], width: int) -> list[str]:
     """Short pieces together on a line; the arms of a choice and the rows of a matrix stay apart."""
     if any(piece.startswith(("if ", "((", "(-", "(0", "(1")) or piece.endswith("),") for piece in pieces):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from derive.emit.python_calls import GIVEN
 from derive.emit.python_program import Argument, Method, Shape
 from derive.kinematics import Kinematics
 
@@ -13,6 +14,8 @@ IMAGE: tuple[Shape, ...] = (
     ("rot_x", "rot_y", "rot_z"),
     ("u_x", "u_y", "u_z"),
 )
+_ROTATION = Argument("rotation", "Rotation", ROTATION)
+_AXES = tuple(Argument(name, "Vector", tuple(f"{name}_{c}" for c in "xyz")) for name in ("flange_axis", "base_axis"))
 
 
 def methods(kin: Kinematics) -> list[Method]:
@@ -23,6 +26,7 @@ def methods(kin: Kinematics) -> list[Method]:
     rows = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i, _ in enumerate(kin.rows, 1))
     margins = tuple(m.name for m in kin.margins)
     found = [
+        *shared(kin),
         *forwards(kin),
         Method("orientation", "The rotation of the frame.", kin.orientation, (axes,), "Rotation", ROTATION),
         branch(kin),
@@ -31,7 +35,12 @@ def methods(kin: Kinematics) -> list[Method]:
         Method("jacobian", "The Jacobian by rows, per radian.", kin.jacobian, (axes,), "Matrix", rows),
         Method("image", "The orientations of the flange.", kin.image, (), "Image", IMAGE),
     ]
-    rotation = Argument("rotation", "Rotation", ROTATION)
+    if kin.twist is not None:
+        text = "The twist of the frame by rows, per radian."
+        entries = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i in range(1, 7))
+        found.append(Method("twist", text, kin.twist, (axes,), "Matrix", entries))
+    found += [*_compatible(kin), *carried(kin), *_total_image(kin)]
+    rotation = _ROTATION
     if kin.projection is not None and kin.chooses_twist:
         text = "The nearest rotation that the flange can have."
         found.append(Method("projection", text, kin.projection, (rotation,), "Rotation", ROTATION))
@@ -43,6 +52,17 @@ def methods(kin: Kinematics) -> list[Method]:
     if kin.offset_configuration is not None:
         text = "The signed margin of every branch for a point off the flange."
         found.append(Method("offset_measures", text, kin.offset_configuration, (axes, offset), "Reals", measures))
+    return found
+
+
+def shared(kin: Kinematics) -> list[Method]:
+    """The programs that others call: arguments and results are tuples of their names."""
+    constants = {o.name for o in kin.setup.outputs}
+    found: list[Method] = []
+    for program in kin.shared:
+        given = Argument(GIVEN, "Reals", tuple(s.name for s in program.inputs if s.name not in constants))
+        outputs = tuple(o.name for o in program.outputs)
+        found.append(Method(program.name, f"{program.summary}.", program, (given,), "Reals", outputs, is_shared=True))
     return found
 
 
@@ -71,6 +91,27 @@ def branch(kin: Kinematics) -> Method:
     pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
     text = "The axes of one branch, periods included, limits not."
     return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape)
+
+
+def carried(kin: Kinematics) -> list[Method]:
+    """Where the end point of an orientation kinematics is, on a flange that turns."""
+    if kin.carried is None:
+        return []
+    text = "From a flange that turns to the end point."
+    return [Method("carried", text, kin.carried, (_ROTATION, *_AXES), "Vector", POSITION)]
+
+
+def _compatible(kin: Kinematics) -> list[Method]:
+    if kin.compatible is None:
+        return []
+    return [Method("compatible", "Whether a flange that turns can carry this.", kin.compatible, _AXES[:1], "", ())]
+
+
+def _total_image(kin: Kinematics) -> list[Method]:
+    if kin.total_image is None:
+        return []
+    text = "The orientations on a flange, and how far the two axes are apart."
+    return [Method("total_image", text, kin.total_image, (_ROTATION, *_AXES), "TotalImage", (*IMAGE, "apart"))]
 
 
 def limits(kin: Kinematics) -> Method:

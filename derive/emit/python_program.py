@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
 import sympy as sp
 from sympy.core.relational import Relational
 
+from derive.emit import python_calls
 from derive.emit.expression import FUNCTION_KEYS
-from derive.emit.python_layout import WIDTH, fold
+from derive.emit.python_layout import WIDTH, fold, taken_apart
 from derive.emit.python_loops import array_end, array_head, scalar_end, scalar_head, solve_lines
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, spelled
-from derive.program import DEGREE, Iterate, Let, Program, Require, Select, Solve, Statement, expressions
+from derive.program import DEGREE, Call, Iterate, Let, Program, Require, Select, Solve, Statement, expressions, symbols_of
 
 Shape = str | tuple["Shape", ...]
 """Names, nested as the tuples of the method's arguments and results are."""
@@ -42,6 +43,8 @@ class Method:
     kind: str
     """The type of the result, where the status is OK; empty where there is none."""
     result: Shape
+    is_shared: bool = False
+    """Whether other programs call it: then, on arrays, it writes the statuses of its caller."""
 
 
 def scalar_body(method: Method) -> list[str]:
@@ -51,6 +54,8 @@ def scalar_body(method: Method) -> list[str]:
         if isinstance(statement, Iterate):
             lines += [*scalar_head(statement, _SCALAR), *_step(statement, _SCALAR)]
             lines += scalar_end(statement, conjunction([statement.done]), _SCALAR)
+        elif isinstance(statement, Call):
+            lines += python_calls.scalar_lines(statement, _SCALAR)
         elif isinstance(statement, Require):
             lines += [*_note(statement.note), *fold(f"if not ({conjunction(r.condition for r in same)}):")]
             lines.append(f"    return Status.{statement.otherwise.name}")
@@ -62,10 +67,14 @@ def scalar_body(method: Method) -> list[str]:
 def array_body(method: Method) -> list[str]:
     """The body on arrays: every statement for all rows, a row's status is its first condition that does not hold."""
     lines = [*_unpacked(method), *_constants(method, "self.constants")]
-    lines.append(f"status = passed({method.arguments[0].name})")
+    if not method.is_shared:
+        first = method.arguments[0]
+        lines.append(f"status = passed({first.name}{'[0]' if first.kind == 'Rotation' else ''})")
     for statement, same in _grouped(method.program.body):
         if isinstance(statement, Iterate):
             lines += [*array_head(statement, _ARRAY), *_step(statement, _ARRAY), *array_end(statement, _ARRAY)]
+        elif isinstance(statement, Call):
+            lines += python_calls.array_lines(statement, _ARRAY)
         elif isinstance(statement, Require):
             lines += _note(statement.note)
             for condition in (r.condition for r in same):
@@ -73,10 +82,12 @@ def array_body(method: Method) -> list[str]:
         else:
             lines += binding_lines(statement, _ARRAY)
     values = _values(method, _ARRAY)
+    if method.is_shared:
+        return [*lines, *fold(f"return {values}")]
     return [*lines, *fold(f"return {values}, status" if values else "return status")]
 
 
-def functions(programs: tuple[Program, ...]) -> list[str]:
+def functions(programs: Sequence[Program]) -> list[str]:
     """The primitives and constants that programs use, by their neutral names, in alphabetical order."""
     found = set()
     for program in programs:
@@ -95,7 +106,7 @@ def has_loop(program: Program) -> bool:
 
 def has_system(program: Program) -> bool:
     """Whether a program solves linear equations."""
-    inner = (i for s in program.body for i in (s.step if isinstance(s, Iterate) else (s,)))
+    inner = (i for s in program.body if not isinstance(s, Call) for i in (s.step if isinstance(s, Iterate) else (s,)))
     return any(isinstance(s, Solve) for s in inner)
 
 
@@ -146,13 +157,18 @@ def _grouped(body: tuple[Statement, ...]) -> Iterator[tuple[Statement, tuple[Req
 
 def _unpacked(method: Method) -> list[str]:
     """The arguments by the names that the program reads; what it does not read is `_`."""
-    read = {s.name for s in method.program.reads()}
+    read = _read(method.program)
     lines: list[str] = []
     for argument in method.arguments:
         if read & set(names(argument.shape)):
-            targets = _targets(argument.shape, read)
-            lines += fold(f"{targets[1:-1]} = {argument.name}" if len(argument.shape) > 1 else f"{targets} = {argument.name}")
+            lines += taken_apart([_targets(part, read) for part in argument.shape], argument.name)
     return lines
+
+
+def _read(program: Program) -> set[str]:
+    """What a program reads by itself: what those read that it calls is their affair."""
+    values = [e for s in program.body for e in expressions(s)] + [o.value for o in program.outputs]
+    return {s.name for value in values for s in symbols_of(value)} - {s.name for s in program.bound()}
 
 
 def _targets(shape: Shape, read: set[str]) -> str:
@@ -174,7 +190,7 @@ def names(shape: Shape) -> Iterator[str]:
 
 def _constants(method: Method, owner: str) -> list[str]:
     given = {name for argument in method.arguments for name in names(argument.shape)}
-    constants = sorted({s.name for s in method.program.reads()} - given)
+    constants = sorted(_read(method.program) - given)
     return [f"k = {owner}", *(f"{spelled(c)} = k.{c}" for c in constants)] if constants else []
 
 

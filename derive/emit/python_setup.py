@@ -7,7 +7,7 @@ from derive.emit.python_printer import ScalarPrinter, spelled
 from derive.emit.python_program import binding_lines, conjunction
 from derive.kinematics import Kinematics
 from derive.mechanism import Parameter, Role
-from derive.program import Iterate, Require
+from derive.program import Call, Iterate, Require
 
 _PRINTER = ScalarPrinter()
 _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
@@ -34,8 +34,8 @@ def setup_body(kin: Kinematics) -> list[str]:
     inputs = [s.name for s in kin.setup.inputs]
     lines: list[str] = []
     for statement in kin.setup.body:
-        if isinstance(statement, Iterate):
-            raise TypeError("what depends on parameters alone is straight-line: a setup program does not iterate")
+        if isinstance(statement, Iterate | Call):
+            raise TypeError("what depends on parameters alone is straight-line: a setup program neither iterates nor calls")
         lines += _refusal(statement, inputs) if isinstance(statement, Require) else binding_lines(statement, _PRINTER)
     values = (f"{spelled(o.name)}={_PRINTER.print(o.value)}" for o in kin.setup.outputs)
     return [*lines, *fold(f"return Constants({', '.join(values)})")]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
 
 from jinja2 import Environment
 
+from derive.emit import plcopen
 from derive.emit.language import GENERATED, TEMPLATES, environment
 from derive.emit.st_block import block_of
 from derive.emit.st_contract import Contract, load
@@ -15,51 +17,97 @@ from derive.emit.st_description import description
 from derive.emit.st_expression import literal
 from derive.emit.st_layout import assigned
 from derive.emit.st_methods import methods_of
+from derive.emit.st_objects import Object, objects_of, ruled
+from derive.emit.st_overview import overview
+from derive.emit.st_reserved import refuse_clashes
+from derive.emit.st_uses import needed
 from derive.kinematics import Kinematics
-from derive.program import EDGE, FREE_ANGLE, LARGEST, PIVOT, TIE
+from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, ROTATION, SOLVABLE, TIE
 
-name = "st"
+_FOLDER = "st"
+_SHARED = "softkin"
+"""The folder of the objects that all blocks share."""
+_PREAMBLE = f"""\
+// {GENERATED}
+// To paste: between two rulers stands the declaration or the implementation of the object that the upper one names.
+"""
 
-_PREAMBLE = f"// {GENERATED}\n\n"
+
+@dataclass(frozen=True)
+class StructuredTextFiles:
+    """The language: text, PLCopenXML and the import script, for a profile of the SoftMotion contract (its own if `None`)."""
+
+    profile: str | None = None
+    name: ClassVar[str] = _FOLDER
+
+    def __post_init__(self) -> None:
+        """Refuse a profile that the contract has not, before anything is derived."""
+        load(self.profile)
+
+    def render(self, kinematics: Sequence[Kinematics]) -> dict[str, str]:
+        """All files of the language: path below its folder → text. Raises `DescriptionError` for a name that clashes."""
+        contract, templates = load(self.profile), _templates()
+        objects = dict(_objects(kinematics, contract, templates))
+        refuse_clashes({f"{path}.st": inside for path, inside in objects.items()})
+        files = {f"{path}.st": f"{_PREAMBLE}\n{ruled(inside)}" for path, inside in objects.items()}
+        files |= {f"{path}.xml": text for path, text in _documents(objects)}
+        rows = list(overview(kinematics))
+        for name in ("import_softkin.py", "README.md"):
+            files[name] = templates.get_template(f"{name}.j2").render(contract.spelling, overview=rows)
+        return dict(sorted(files.items()))
 
 
-def render(kinematics: Sequence[Kinematics]) -> dict[str, str]:
-    """All files of the language: path below its folder → text."""
-    contract, templates = load(), _templates()
-    files = {f"softkin/{path.stem}": _shared(path.name, contract, templates) for path in _shared_objects()}
+def _objects(
+    kinematics: Sequence[Kinematics], contract: Contract, templates: Environment
+) -> Iterator[tuple[str, tuple[Object, ...]]]:
+    """The objects of every file, by its path without the ending."""
+    for path in sorted((TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2")):
+        text = templates.get_template(f"{_SHARED}/{path.name}").render(contract.spelling)
+        yield f"{_SHARED}/{path.name.removesuffix('.st.j2')}", objects_of(text)
     for one in kinematics:
-        files[f"{one.mechanism.family}/{one.mechanism.block_name}.st"] = _unit(one, contract, templates)
-    return dict(sorted(files.items()))
+        yield f"{one.mechanism.family}/{one.mechanism.block_name}", objects_of(_unit(one, contract, templates))
+
+
+def _documents(objects: Mapping[str, Sequence[Object]]) -> Iterator[tuple[str, str]]:
+    """PLCopenXML: one file with everything, and one for every mechanism with what it needs."""
+    yield "softkin", plcopen.document("Softkin", GENERATED, _by_folder(objects))
+    for path in objects:
+        if not path.startswith(f"{_SHARED}/"):
+            chosen = {p: objects[p] for p in needed(path, objects)}
+            yield path, plcopen.document("Softkin", GENERATED, _by_folder(chosen))
+
+
+def _by_folder(objects: Mapping[str, Sequence[Object]]) -> dict[str, list[Object]]:
+    folders: dict[str, list[Object]] = {}
+    for path, inside in sorted(objects.items()):
+        folders.setdefault(path.split("/")[0], []).extend(inside)
+    return folders
 
 
 def _templates() -> Environment:
-    templates = environment(name)
+    templates = environment(_FOLDER)
     templates.globals.update(
         assigned=assigned,
+        generated=GENERATED,
         degree=literal(math.pi / 180.0),
         free_angle=literal(float(FREE_ANGLE)),
         edge=literal(float(EDGE)),
         largest=literal(float(LARGEST)),
+        held=literal(float(HELD)),
+        rotation=literal(float(ROTATION)),
         pivot=literal(float(PIVOT)),
+        solvable=literal(float(SOLVABLE)),
+        smallest=literal(1.0 / float(SOLVABLE)),
         tie=literal(float(TIE)),
     )
     return templates
 
 
-def _shared_objects() -> list[Path]:
-    return sorted((TEMPLATES / name / "softkin").glob("*.st.j2"))
-
-
-def _shared(file: str, contract: Contract, templates: Environment) -> str:
-    return _PREAMBLE + templates.get_template(f"softkin/{file}").render(contract.spelling)
-
-
 def _unit(kinematics: Kinematics, contract: Contract, templates: Environment) -> str:
     block = block_of(kinematics, contract)
-    text = templates.get_template("block.st.j2").render(
+    return templates.get_template("block.st.j2").render(
         contract.spelling,
         block=block,
         description=description(kinematics, block, templates),
         methods=methods_of(kinematics, block, contract, templates),
     )
-    return _PREAMBLE + text.rstrip("\n") + "\n"

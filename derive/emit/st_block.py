@@ -10,7 +10,7 @@ from derive.emit.st_expression import literal
 from derive.emit.st_inputs import Input, parameter_input
 from derive.emit.st_names import capitalized, stored_name
 from derive.emit.st_program import Printed
-from derive.kinematics import Freedom, Kinematics
+from derive.kinematics import Kinematics
 from derive.mechanism import Joint, Kind
 from derive.program import SINGULAR, Program
 
@@ -81,6 +81,8 @@ class Block:
     periods: tuple[PeriodByte, ...]
     configuration_size: int
     freedom: str
+    turning: str
+    """How much of the commanded rotation is followed: a value of `Turning`."""
     rows: tuple[str, ...]
     margins: tuple[str, ...]
     computed: tuple[tuple[str, str], ...]
@@ -122,6 +124,7 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         ),
         configuration_size=kinematics.configuration_size,
         freedom=spelling["freedom"][kinematics.freedom.value],
+        turning=mechanism.task.turning.value,
         rows=kinematics.rows,
         margins=tuple(m.name for m in kinematics.margins),
         computed=tuple((stored_name(o), o) for o in constants(kinematics) if o not in direct(kinematics).values()),
@@ -141,6 +144,9 @@ def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
         kinematics.projection,
         kinematics.offset_branch,
         kinematics.offset_configuration,
+        kinematics.compatible,
+        kinematics.carried,
+        kinematics.total_image,
     )
     return tuple(p for p in found if p is not None)
 
@@ -184,12 +190,12 @@ def _interfaces(kinematics: Kinematics, contract: Contract) -> tuple[str, ...]:
         wanted.append("ISMKinematicWithConfigurations4")
     if kinematics.period_joints:
         wanted.append("ISMKinPeriodHandling")
-    if kinematics.freedom is Freedom.THREE:
-        pass  # a full kinematics: no orientation kinematics is put behind it
-    elif kinematics.offset_branch is None:
+    if kinematics.mechanism.is_orientation:
+        wanted += ["ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2"]
+    elif kinematics.mechanism.is_position and kinematics.offset_branch is None:
         wanted.append("ISMPositionKinematics2")
-    else:
+    elif kinematics.mechanism.is_position:
         wanted.append("ISMPositionKinematics_Offset2" if has_configuration else "ISMPositionKinematics_Offset")
-    if kinematics.projection is not None:
+    if kinematics.projection is not None and not kinematics.mechanism.is_orientation:
         wanted.append("ISMKinematicsWithOrientationImage2")
     return tuple(name for name in map(contract.available, wanted) if name is not None)

@@ -69,6 +69,8 @@ def _distance(kinematics: Kinematics, block: Block, read: set[str]) -> tuple[str
     """The distance to the reference. Where the branch has not refused a reference that is no number, this does."""
     fields = {axis.name: axis.field for axis in block.axes}
     differences = [f"(candidate.{fields[j.name]} - aRef.{fields[j.name]})" for j in kinematics.distance_joints]
+    if not differences:
+        return ()  # nothing to choose from
     first, *more = [f"{d}*{d}" for d in differences]
     lines = [f"distance := {first}", *(f"    + {term}" for term in more)]
     lines[-1] += ";"

@@ -6,6 +6,7 @@ import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from pathlib import Path
 from typing import Any
 
 from derive.emit.language import TEMPLATES
@@ -45,6 +46,8 @@ class Interface:
     """An interface: what it extends, and what it adds."""
 
     name: str
+    since: tuple[int, ...]
+    """The version of the oldest library whose documentation lists it."""
     extends: tuple[str, ...]
     properties: Mapping[str, str]
     methods: Mapping[str, Signature]
@@ -82,15 +85,25 @@ class Contract:
             yield from self.closure(self.interfaces[name].extends)
 
 
-def load() -> Contract:
-    """Read the contract."""
-    data = tomllib.loads(_FILE.read_text(encoding="utf-8"))
-    interfaces = {
-        name: Interface(name, tuple(i["extends"]), i.get("properties", {}), _signatures(i.get("methods", {})))
-        for name, i in data.pop("interfaces").items()
-    }
-    omits = frozenset(data["profiles"][data["profile"]]["omits"])
-    return Contract(interfaces, _signatures(data.pop("own")), omits, data)
+def load(profile: str | None = None, file: Path = _FILE) -> Contract:
+    """Read the contract for a profile, its own if `None`; raises `ValueError` for a profile it has not."""
+    data = tomllib.loads(file.read_text(encoding="utf-8"))
+    name, profiles = profile or data["profile"], data["profiles"]
+    if name not in profiles:
+        raise ValueError(f"no profile is called {name!r}; there are {', '.join(profiles)}")
+    interfaces = {key: _interface(key, table) for key, table in data.pop("interfaces").items()}
+    newest = _version(profiles[name]["library"])
+    newer = {interface.name for interface in interfaces.values() if interface.since > newest}
+    return Contract(interfaces, _signatures(data.pop("own")), frozenset(newer) | frozenset(profiles[name]["omits"]), data)
+
+
+def _interface(name: str, table: Mapping[str, Any]) -> Interface:
+    methods = _signatures(table.get("methods", {}))
+    return Interface(name, _version(table["since"]), tuple(table["extends"]), table.get("properties", {}), methods)
+
+
+def _version(text: str) -> tuple[int, ...]:
+    return tuple(map(int, text.split(".")))
 
 
 def _signatures(methods: Mapping[str, Any]) -> dict[str, Signature]:

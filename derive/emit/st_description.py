@@ -16,7 +16,12 @@ _WIDTH = 100
 _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
 _PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 the value nearest to the reference"
 _BRANCH = "0 automatic, 3 where both solutions coincide"
-_SOURCE = "Position kinematics for a SoftMotion axis group. Source of the geometry: "
+_KINDS = {
+    (True, False): "Position kinematics for a SoftMotion axis group. ",
+    (False, True): "Orientation kinematics, to be combined with a position kinematics for a SoftMotion axis group. ",
+    (False, False): "Kinematics for a SoftMotion axis group. ",
+}
+"""By whether it is a position kinematics, and whether an orientation kinematics."""
 _AUTOMATIC = (
     "Automatic bytes take the solution nearest to the reference. They are meant for point-to-point movements; "
     "limits refuse a solution, they never choose another one."
@@ -26,9 +31,11 @@ _AUTOMATIC = (
 def description(kinematics: Kinematics, block: Block, templates: Environment) -> str:
     """The description of a block."""
     names = {p.name: input_name(p) for p in kinematics.parameters}
+    mechanism = kinematics.mechanism
+    source = f"{_KINDS[mechanism.is_position, mechanism.is_orientation]}Source of the geometry: {mechanism.source}."
     text = templates.get_template("description.rst.j2").render(
-        mechanism=kinematics.mechanism,
-        source="\n".join(wrap(_SOURCE + kinematics.mechanism.source + ".", _WIDTH)),
+        mechanism=mechanism,
+        source="\n".join(wrap(source, _WIDTH)),
         summary="\n".join(wrap(kinematics.mechanism.summary, _WIDTH)),
         rows=", ".join(kinematics.rows),
         axes=_table(("Axis", "Motion", "Meaning"), _axes(kinematics)),
@@ -82,6 +89,9 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
         "finding, each of them a solution of these formulas. No run on a controller.",
         _WIDTH,
     )
+    if found.missed is not None:
+        missed, total = found.missed
+        yield from wrap(f"A scan is no proof: it missed {missed} of {total} solutions in this check.", _WIDTH)
 
 
 def _item(text: str) -> list[str]:

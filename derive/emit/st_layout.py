@@ -33,6 +33,17 @@ def wrapped(statement: str) -> list[str]:
     return [*lines, margin + statement]
 
 
+def packed(pieces: Sequence[str]) -> list[str]:
+    """Short pieces together on lines that leave room for an indent."""
+    lines: list[str] = []
+    for piece in pieces:
+        if lines and len(lines[-1]) + 1 + len(piece) <= WIDTH - 10:
+            lines[-1] += f" {piece}"
+        else:
+            lines.append(piece)
+    return lines
+
+
 def assigned(target: str, value: str) -> str:
     """`target := value;` in as many lines as it takes."""
     return "\n".join(wrapped(f"{target} := {value};"))

@@ -32,8 +32,20 @@ def solve_lines(system: Solve, printer: StructuredText) -> Iterator[str]:
     target = "" if system.determinant is None else f"{printer.name(system.determinant)} := "
     given = f"aMatrix := {_MATRIX}, aRight := {_RIGHT}, iSize := {system.size}, iColumns := {system.columns}"
     yield from wrapped(f"{target}Softkin_Solve({given});")
-    for k, name in enumerate(system.names):
-        yield f"{printer.name(name)} := {_RIGHT}[{k // system.columns + 1}, {k % system.columns + 1}];"
+    for name, element in elements(system).items():
+        if printer.names[name] != element:
+            yield f"{printer.names[name]} := {element};"
+
+
+def elements(system: Solve) -> dict[str, str]:
+    """Where the solution stands, by the names of the unknowns."""
+    return {n.name: f"{_RIGHT}[{k // system.columns + 1}, {k % system.columns + 1}]" for k, n in enumerate(system.names)}
+
+
+def kept(body: Sequence[Statement]) -> dict[str, str]:
+    """The unknowns that need no variables of their own: those of a system at the end, for several right-hand sides."""
+    last = body[-1] if body else None
+    return elements(last) if isinstance(last, Solve) and last.columns > 1 else {}
 
 
 def loop_lines(loop: Iterate, step: Sequence[str], printer: StructuredText, refusal: Sequence[str]) -> Iterator[str]:

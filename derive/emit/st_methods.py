@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from jinja2 import Environment
 
 from derive.emit.st_block import Block, constants, direct
 from derive.emit.st_calls import BranchCall, branch_call
-from derive.emit.st_contract import Contract, Signature
+from derive.emit.st_contract import Contract, Parameter, Signature
 from derive.emit.st_inputs import number_of
 from derive.emit.st_names import joined, stored_name
-from derive.emit.st_program import Printed, Refusal, printed
+from derive.emit.st_program import Printed, printed
+from derive.emit.st_refusal import Refusal
+from derive.emit.st_shared import method_name, own_names, signature_of
 from derive.kinematics import Kinematics
-from derive.program import Program, Status
+from derive.program import Program, shared
 
 _FIRST = (
     "Initialize",
@@ -32,6 +34,12 @@ _FIRST = (
     "GetFlangeOrientationImageWithOri",
     "AxesToConfiguration_Offset",
     "CartesianToAxes_Offset",
+    "IsCompatibleWithPosKin",
+    "GetPositionFromOrientation3",
+    "GetPositionFromOrientation2",
+    "GetPositionFromOrientation",
+    "GetOrientationImageTotal",
+    "GetOrientationImageWithOri",
 )
 
 
@@ -50,6 +58,7 @@ class _Source:
     signature: Signature
     program: Program | None = None
     call: BranchCall | None = None
+    is_shared: bool = False
 
 
 def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> tuple[Method, ...]:
@@ -64,6 +73,8 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
         spelled[joint.axis.name] = f"a.a{index}"
         spelled[joint.reference.name] = f"aRef.a{index}"
         spelled[joint.turn.name] = joined(joint.turn.name)
+    for axis in "xyz":
+        spelled[f"flange_axis_{axis}"], spelled[f"base_axis_{axis}"] = f"flangeAxis.d{axis.upper()}", f"baseAxis.d{axis.upper()}"
     spelled |= {f"sigma_{b.name}": joined(f"sigma_{b.name}") for b in kinematics.branches}
     return spelled | {f"r{r}{c}": f"rot[{r}, {c}]" for r in (1, 2, 3) for c in (1, 2, 3)}
 
@@ -79,21 +90,38 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
         "GetFlangeOrientationImageWithOri": kinematics.projection,
         "AxesToConfiguration_Offset": kinematics.offset_configuration,
         "Jacobian": kinematics.jacobian,
+        "IsCompatibleWithPosKin": kinematics.compatible,
+        "GetPositionFromOrientation3": kinematics.carried,
+        "GetOrientationImageTotal": kinematics.total_image,
+        "GetOrientationImageWithOri": kinematics.image if kinematics.total_image else kinematics.projection,
     }
     solved = {"CartesianToAxes": kinematics.branch, "CartesianToAxes_Offset": kinematics.offset_branch}
     names = _names(block, contract)
     if "GetOrientationImage" not in names:
         programs["GetFlangeOrientationImageTotal"] = kinematics.image
+    ready: set[str] = set()
     for name in names:
         program = solved.get(name)
         if program is None:
             yield _Source(known[name], programs.get(name))
+            yield from _shared(programs.get(name), kinematics, contract, ready)
+            if name == "GetPositionFromOrientation3":
+                yield _Source(_end_point(known[name], contract))
             continue
         call = branch_call(known[name], program, kinematics, block)
         yield _Source(known[name], call=call)
         yield _Source(call.signature, program)
+        yield from _shared(program, kinematics, contract, ready)
         if name == "CartesianToAxes":
             yield _Source(_check_limits(contract), kinematics.limits)
+
+
+def _shared(program: Program | None, kinematics: Kinematics, contract: Contract, ready: set[str]) -> Iterator[_Source]:
+    """The programs that a method is the first to call."""
+    called = shared([program]) if program is not None else ()
+    for inner in (p for p in called if p.name not in ready):
+        ready.add(inner.name)
+        yield _Source(signature_of(inner, spelled_inputs(kinematics), contract), inner, is_shared=True)
 
 
 def _names(block: Block, contract: Contract) -> list[str]:
@@ -108,24 +136,42 @@ def _check_limits(contract: Contract) -> Signature:
     return Signature("TestLimits", contract.spelling["types"]["error"], (axes,), "PRIVATE")
 
 
+def _end_point(public: Signature, contract: Contract) -> Signature:
+    """Where the end point is on a flange of known orientation."""
+    flange = Parameter("VAR_IN_OUT CONSTANT", "mFlange", contract.spelling["types"]["matrix"])
+    kept = (p for p in public.parameters if p.name != "oriInfo")
+    ordered = sorted((*kept, flange), key=lambda p: p.name != "v")
+    return Signature("EndPointOnFlange", public.returns, tuple(ordered), "PRIVATE")
+
+
 def _method(source: _Source, kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> Method:
     name = source.signature.name
-    context: dict[str, object] = {"block": block, "method": name, "call": source.call}
+    reads = kinematics.reads_rotation
+    context: dict[str, object] = {"block": block, "method": name, "call": source.call, "reads_rotation": reads}
     if source.program is not None:
-        context["program"] = _printed(source.signature, source.program, kinematics, block, contract)
-    text = templates.get_template(f"methods/{name}.st.j2").render(contract.spelling, **context)
+        context["program"] = program = _printed(source, source.program, kinematics, block, contract)
+        own = own_names(source.program, spelled_inputs(kinematics))
+        context["results"] = [(own[o], text) for o, text in program.outputs.items() if o in own and own[o] != text]
+    template = "Shared" if source.is_shared else name
+    text = templates.get_template(f"methods/{template}.st.j2").render(contract.spelling, **context)
     return Method(source.signature.head(), _tidy(text))
 
 
-def _printed(signature: Signature, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> Printed:
+def _printed(source: _Source, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> Printed:
+    signature = source.signature
     taken = {i.name for i in block.inputs} | set(block.fields) | {p.name for p in signature.parameters}
     taken |= {"initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes", *contract.signatures}
-    refusal = _refusal(signature, contract.spelling["errors"])
+    taken |= {method_name(inner) for inner in kinematics.shared}
+    refusal = Refusal(signature, contract.spelling["errors"], contract.spelling["types"]["error"])
     if program is kinematics.setup:
         given = {p.name: number_of(p) for p in kinematics.parameters}
         stored = {let: stored_name(output) for let, output in direct(kinematics).items()}
         return printed(program, given, stored, taken, refusal)
-    return printed(program, _positions(signature) | spelled_inputs(kinematics), {}, taken, refusal)
+    spelled = spelled_inputs(kinematics)
+    if source.is_shared:
+        own = own_names(program, spelled)
+        return printed(program, spelled | own, {o.name: own[o.name] for o in program.outputs}, taken, refusal)
+    return printed(program, _positions(signature) | spelled, {}, taken, refusal)
 
 
 def _positions(signature: Signature) -> dict[str, str]:
@@ -136,18 +182,6 @@ def _positions(signature: Signature) -> dict[str, str]:
     if "vOffset_TCP" in names:
         spelled |= {f"point_{axis}": f"vOffset_TCP.d{axis.upper()}" for axis in "xyz"}
     return spelled
-
-
-def _refusal(signature: Signature, errors: Mapping[str, str]) -> Refusal:
-    """How a method ends where a condition of its program does not hold."""
-
-    def lines(status: Status) -> tuple[str, ...]:
-        if not signature.returns:
-            return ("RETURN;",)
-        value = "TRUE" if signature.returns == "BOOL" else errors[status.name]
-        return (f"{signature.name} := {value};", "RETURN;")
-
-    return lines
 
 
 def _tidy(text: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
+from derive.emit.st_reserved import reserved
 from derive.mechanism import Parameter, Role
 
 _LETTERS = {"zc": "ZC"}
@@ -12,23 +13,10 @@ _LETTERS = {"zc": "ZC"}
 _NEUTRAL = re.compile(r"[a-z]+(_[a-z0-9]+)+")
 _PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
 
-RESERVED = frozenset(
-    """
-    abs acos action adr and any array asin at atan begin bool by byte case constant continue cos date delete dint do
-    dt dword edom efault einval else elsif end eof erange error exit exp expt f_edge false final find for from function
-    get if implements in infinity insert int interface jmp left len limit lint ln log lreal ltime lword max method mid
-    min mod move mux nan new not null of on or out persistent pi pointer private program property public r_edge read
-    real ref reference region repeat replace retain return right rol ror s sel set shl shr sin sint sizeof sqrt step
-    string struct super t tan task then this time to tod transition true trunc type udint uint ulint union until usint
-    var while with word write wstring xor
-    """.split()
-)
-"""Words of the language and of its dialects, and macros of the C compilers behind some of them."""
-
 TEMPLATE_LOCALS = frozenset(
     """
-    branch candidate column configuration distance failure found least nothing order projected rot row slot solution
-    status tried
+    apart baseaxis branch candidate column configuration distance failure flange flangeaxis found frame identity least
+    nothing order projected relative rot rotation row slot solution space status total tried
     """.split()
 )
 """Variables that the templates of methods declare."""
@@ -62,7 +50,7 @@ def respelled(text: str, names: Mapping[str, str]) -> str:
 
 def spellings(names: Iterable[str], taken: Iterable[str]) -> dict[str, str]:
     """A spelling for every neutral name, none of which is reserved or taken."""
-    used = {t.lower() for t in taken} | RESERVED | TEMPLATE_LOCALS
+    used = {t.lower() for t in taken} | reserved() | TEMPLATE_LOCALS
     found: dict[str, str] = {}
     for name in names:
         spelled = joined(name)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -10,12 +10,11 @@ import sympy as sp
 
 from derive.emit.st_expression import StructuredText, is_size_test
 from derive.emit.st_layout import commented, conjunction, indented, wrapped
-from derive.emit.st_loops import LOCALS, declarations, loop_lines, solve_lines
+from derive.emit.st_loops import LOCALS, declarations, kept, loop_lines, solve_lines
 from derive.emit.st_names import respelled, spellings
-from derive.program import DEGREE, Iterate, Let, Program, Require, Select, Solve, Statement, Status
-
-Refusal = Callable[[Status], Sequence[str]]
-"""What a method does where a condition does not hold: the statements up to and with RETURN."""
+from derive.emit.st_refusal import Refusal
+from derive.emit.st_shared import OUTCOME, call_lines
+from derive.program import DEGREE, Call, Iterate, Let, Program, Require, Select, Solve, Statement, Status
 
 _SHORT = 72
 """A selection that fits in this many columns stays on one line."""
@@ -42,15 +41,21 @@ def printed(
     `given` spells what it reads, `stored` those of its bindings that are instance variables; the others are
     temporaries, and have none of the names in `taken`.
     """
+    stored = {**stored, **kept(program.body)}
     names = (name.name for name in program.bound() if name.name not in stored)
-    temporaries = spellings(names, (*taken, *LOCALS))
+    temporaries = spellings(names, (*taken, *LOCALS, OUTCOME))
     printer = StructuredText({**given, **stored, **temporaries, DEGREE.name: "DEGREE"})
     return Printed(
         variables=tuple(temporaries.values()),
-        declarations=declarations(program.body),
+        declarations=(*declarations(program.body), *_outcome(program, refusal)),
         body="\n".join(_body(program.body, printer, refusal)),
         outputs={o.name: printer.print(o.value) for o in program.outputs},
     )
+
+
+def _outcome(program: Program, refusal: Refusal) -> Iterator[str]:
+    if any(isinstance(s, Call) for s in program.body):
+        yield f"{OUTCOME} : {refusal.type};"
 
 
 def _body(body: Sequence[Statement], printer: StructuredText, refusal: Refusal) -> Iterator[str]:
@@ -60,15 +65,19 @@ def _body(body: Sequence[Statement], printer: StructuredText, refusal: Refusal) 
         if isinstance(first, Solve):
             yield from commented([*solve_lines(first, printer), ""], respelled(first.note, printer.names))
             continue
+        if isinstance(first, Call):
+            yield from commented([*call_lines(first, printer, refusal), ""], respelled(first.note, printer.names))
+            continue
         if isinstance(first, Iterate):
             step = list(_body(first.step, printer, refusal))
-            lines = list(loop_lines(first, step, printer, refusal(first.otherwise)))
+            lines = list(loop_lines(first, step, printer, refusal.of(first.otherwise)))
             yield from ("", *commented(lines, respelled(first.note, printer.names)), "")
             continue
         lets = [s for s in statements if isinstance(s, Let)]
         if isinstance(first, Require):
             conditions = [s.condition for s in statements if isinstance(s, Require)]
-            yield from commented(_require(conditions, printer, refusal(first.otherwise)), respelled(first.note, printer.names))
+            lines = _require(conditions, printer, refusal.of(first.otherwise))
+            yield from commented(lines, respelled(first.note, printer.names))
         elif isinstance(kind[0], str):
             yield from commented(_choice(kind[0], lets, printer), _notes(lets, printer.names))
         else:
@@ -84,7 +93,7 @@ def _kind(statement: Statement, printer: StructuredText) -> Kind:
     Conditions that refuse alike are one condition. Those on the size of inputs stay apart: AND evaluates both
     sides, and what follows them is defined only where they hold. Selections by one condition are one IF.
     """
-    if isinstance(statement, Solve | Iterate):
+    if isinstance(statement, Solve | Iterate | Call):
         return None, statement, False
     if isinstance(statement, Require):
         return statement.otherwise, statement.note, all(map(is_size_test, sp.And.make_args(statement.condition)))

@@ -61,7 +61,8 @@ def _solve(problem: Problem, angle: sp.Symbol, used: tuple[Equation, Equation], 
         reach = naming.length("reach", e1, e2)
         scale = problem.scale_of(used[0])
         known = direction(problem, angle, along=cos_part, across=sin_part, measure=reach, note=note, scale=scale)
-        return Binding("pair", (angle,), (*naming.lets, *known), measure=Measure(angle, reach, scale))
+        measure, residual = Measure(angle, reach, scale), reach**2 - along**2 - across**2
+        return Binding("pair", (angle,), (*naming.lets, *known), measure=measure, residual=residual)
     if not problem.is_never_zero(slope):
         return None
     inverse = slope if slope**2 in (1, *(s**2 for s in problem.signs)) else 1 / slope  # ±1 is its own inverse

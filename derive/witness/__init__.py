@@ -15,6 +15,7 @@ from derive.witness.disagreement import Disagreement
 from derive.witness.inverse import check_inverse, check_offset, check_solutions
 from derive.witness.orientation import check_orientation
 from derive.witness.samples import regular_samples
+from derive.witness.still import check_still
 
 __all__ = ["Disagreement", "witness"]
 
@@ -25,13 +26,15 @@ def witness(kin: Kinematics) -> Evidence:
     """Measure every program of the mechanism; raises `Disagreement` where one contradicts the closure."""
     try:
         closure = closure_of(kin.mechanism)
+        if not kin.mechanism.joints:
+            return check_still(kin, closure)
         samples = regular_samples(kin, closure)
         forward = max(check_forward(kin, closure, samples), check_orientation(kin, samples))
         jacobian = check_jacobian(kin, closure, samples)
         check_margins(kin, closure, samples)
         inverse, round_trip = check_inverse(kin, closure, samples)
         offset, offset_trip = check_offset(kin, closure, samples)
-        solutions = check_solutions(kin, closure, samples)
+        solutions, missed = check_solutions(kin, closure, samples)
     except Disagreement as problem:
         raise Disagreement(f"{kin.mechanism.name}: {problem}") from None
     return Evidence(
@@ -40,6 +43,7 @@ def witness(kin: Kinematics) -> Evidence:
         round_trip=decade(max(round_trip, offset_trip)),
         jacobian=decade(jacobian),
         solutions=solutions,
+        missed=missed,
     )
 
 

@@ -15,7 +15,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from derive.frames import Chain, Motion
-from derive.mechanism import ROTATION, Mechanism, Turning, X, Y, Z
+from derive.mechanism import COORDINATE_NAMES, ROTATION, Branch, Mechanism, Turning, X, Y, Z
 from derive.program import DEGREE, real
 from derive.run import Array
 from derive.witness.terms import Term, term
@@ -73,7 +73,7 @@ class Closure:
 
     def row_scale(self, reach: Array) -> Array:
         """What one unit of each task row is, where lengths are measured in reaches."""
-        return np.where([row.startswith("turn ") for row in self.task], 1.0, reach[:, None])
+        return np.where([row not in COORDINATE_NAMES for row in self.task], 1.0, reach[:, None])
 
     def joint_scale(self, reach: Array) -> Array:
         """The same of the joints, in radians and lengths."""
@@ -110,7 +110,7 @@ def closure_of(mechanism: Mechanism) -> Closure:
         by_joints=Rows("by_joints", state, ca.jacobian(at_rest[0], q)),
         frame=Rows("frame", (q, p), _frame(mechanism.chain, known)),
         positive=Rows("positive", state, _column([term(sp.sympify(e), named) for e in _positive(mechanism)])),
-        indicators=Rows("indicators", state, _column([b.signs[0] * term(b.indicator, named) for b in mechanism.branches])),
+        indicators=Rows("indicators", state, _column([_indicator(b, named) for b in mechanism.branches])),
         equations=equations,
         task=task,
         parameters=tuple(s.name for s in constants),
@@ -120,8 +120,10 @@ def closure_of(mechanism: Mechanism) -> Closure:
 
 def task_rows(mechanism: Mechanism) -> tuple[str, ...]:
     """The commanded directions: what the rows of the Jacobian must be."""
-    turns = {Turning.NONE: "", Turning.ABOUT_Z: "z", Turning.FULL: "xyz"}[mechanism.task.turning]
-    return (*mechanism.task.position, *(f"turn {axis}" for axis in turns))
+    turns = {Turning.NONE: "", Turning.ABOUT_Z: "z", Turning.FULL: "xyz"}
+    if mechanism.task.turning is Turning.DIRECTION:
+        return (*mechanism.task.position, "tilt x", "tilt y")
+    return (*mechanism.task.position, *(f"turn {axis}" for axis in turns[mechanism.task.turning]))
 
 
 def _positive(mechanism: Mechanism) -> list[sp.Expr]:
@@ -132,6 +134,11 @@ def _positive(mechanism: Mechanism) -> list[sp.Expr]:
     way = mechanism.assembly
     mode = way.signs[0] * (1 - 2 * real(way.parameter)) * way.indicator * sp.sign(way.handedness)
     return [*left, mode / sp.Mul(*[rod.length for rod in mechanism.rods]) - LEAST_MARGIN]
+
+
+def _indicator(branch: Branch, named: dict[sp.Symbol, Term]) -> Term:
+    """Positive is byte 1; not a number, which contradicts nothing, where only a search tells the solutions apart."""
+    return ca.SX(float("nan")) if branch.is_crossing else branch.signs[0] * term(branch.indicator, named)
 
 
 def _column(terms: list[Term]) -> Term:
@@ -151,11 +158,12 @@ def _joint_values(mechanism: Mechanism, axes: Term, known: dict[sp.Symbol, Term]
 
 def _moved(pose: Term, task: tuple[str, ...], twist: Term) -> Term:
     """The pose moved by a small twist: p + v, (I + [ω]) R."""
-    shift, spin = [ca.SX(0)] * 3, [ca.SX(0)] * 3
+    shift, spin, tilt = ([ca.SX(0)] * 3 for _ in range(3))
+    parts = {"turn": spin, "tilt": tilt}
     for i, row in enumerate(task):
-        (spin if row.startswith("turn ") else shift)["xyz".index(row[-1])] = twist[i]
+        parts.get(row[:4], shift)["xyz".index(row[-1])] = twist[i]
     rotation = ca.reshape(pose[3:], 3, 3).T
-    turned = rotation + ca.skew(ca.vertcat(*spin)) @ rotation
+    turned = rotation + ca.skew(ca.vertcat(*spin)) @ rotation + rotation @ ca.skew(ca.vertcat(*tilt))
     return ca.vertcat(pose[:3] + ca.vertcat(*shift), ca.reshape(turned.T, 9, 1))
 
 
@@ -166,8 +174,8 @@ def _residual(mechanism: Mechanism, known: dict[sp.Symbol, Term], pose: Term) ->
         return _column([term(sp.sympify(e), named) for e in mechanism.equations]), len(mechanism.equations)
     difference = _frame(mechanism.chain, known) - pose
     count = len(mechanism.task.position)
-    follows = mechanism.task.turning is not Turning.NONE
-    return (ca.vertcat(difference[:count], difference[3:]) if follows else difference[:count]), count
+    rotation = {Turning.NONE: [], Turning.DIRECTION: [5, 8, 11]}.get(mechanism.task.turning, list(range(3, 12)))
+    return difference[[*range(count), *rotation]], count
 
 
 def _frame(chain: Chain | None, known: dict[sp.Symbol, Term]) -> Term:

@@ -63,7 +63,7 @@ class Samples:
 def regular_samples(kin: Kinematics, closure: Closure) -> Samples:
     """Regular poses of the nominal and of several random machines."""
     rng = np.random.default_rng(SEED)
-    machines = _machines(kin, rng)
+    machines = random_machines(kin, rng)
     count = len(next(iter(machines.values())))
     is_loop = bool(kin.mechanism.rods) and kin.mechanism.task.turning is Turning.NONE
     machine = np.repeat(np.arange(count), _LOOP_CANDIDATES if is_loop else _CANDIDATES)
@@ -109,7 +109,7 @@ def describe(kin: Kinematics, samples: Samples, row: int) -> str:
     return f"at {axes}" + (f" of the machine {machine}" if machine else "")
 
 
-def _machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
+def random_machines(kin: Kinematics, rng: Generator) -> dict[str, Array]:
     """Parameters and constants of the machines that `setup` accepts, the nominal one first."""
     count = 8 * MACHINES
     names = {p.name for p in kin.mechanism.parameters} | {j.offset.name for j in kin.mechanism.joints}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Mapping
 from functools import reduce
 from operator import add, mul
@@ -11,7 +12,7 @@ import casadi as ca
 import sympy as sp
 
 from derive.mechanism import DescriptionError
-from derive.program import DEGREE
+from derive.program import DEGREE, Select
 
 Term = Any
 """A CasADi expression (`casadi.SX`) or a number; CasADi carries no types."""
@@ -24,6 +25,8 @@ _FUNCTIONS: dict[type[sp.Basic], Callable[..., Term]] = {
     sp.cos: ca.cos,
     sp.Abs: ca.fabs,
     sp.sign: ca.sign,
+    sp.Gt: operator.gt,
+    Select: ca.if_else,
 }
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from derive.mechanism import Mechanism
 from tests.execution.twins import MECHANISMS
 from tests.execution.units import file_of, shared_texts, text_of
 
 (MECHANISM,) = (m for m in MECHANISMS if m.name == "Kin_Scara4_ZCcoupled_Type1")
-FILE = file_of(MECHANISM)
 
 
 @dataclass(frozen=True)
@@ -23,9 +23,9 @@ class Break:
     """What the harness must say; nothing where a comparison must fail."""
 
 
-def texts(change: Break | None = None) -> Mapping[str, str]:
-    """The unit and the shared objects, with a change to one of them."""
-    found = {**shared_texts(), FILE: text_of(MECHANISM)}
+def texts(change: Break | None = None, mechanism: Mechanism = MECHANISM) -> Mapping[str, str]:
+    """The unit of a mechanism and the shared objects, with a change to one of them."""
+    found = {**shared_texts(), file_of(mechanism): text_of(mechanism)}
     if change is not None:
         (file,) = [file for file, text in found.items() if change.where in text and f"{change.where}\n" in declared(text)]
         start = found[file].index(change.where)
@@ -82,7 +82,7 @@ REFUSED = {
 
 FAULTS = {
     "a division by zero": Break(_BRANCH, "headingAlong/headingDivisor", "headingAlong/0.0", "division by zero"),
-    "a root of a negative": Break(_BRANCH, "reach := Softkin_Root(", "reach := SQRT(-1.0 - ", "SQRT of a negative"),
+    "a root of a negative": Break(_BRANCH, "reach := Softkin_Root(", "reach := SQRT(-1.0E12 + ", "SQRT of a negative"),
     "a product that overflows": Break(_FORWARD, "cosA1 := COS(a1)", "cosA1 := 1.0E200*COS(a1)*1.0E200", "not finite"),
     "an unused axis that is read": Break(_FORWARD, "a.a2 - offsetA3", "a.a2 - a.a4", "not finite"),
     "an integer that overflows": Break(_INVERSE, ":= slot MOD 2 + 1", ":= slot + 32767", "overflow"),

@@ -180,3 +180,13 @@ def test_solve_where_nothing_solves(matrix: np.ndarray) -> None:
     determinant, solution = solved(matrix, np.ones((3, 2)))
     assert determinant == 0.0
     assert not solution.any()
+
+
+def test_solve_what_is_no_number() -> None:
+    for wrong in (math.nan, math.inf, -math.inf, 1e31):
+        for k in range(2):
+            tables = np.array([[2.0, 1.0], [1.0, -3.0]]), np.array([[1.0], [2.0]])
+            tables[k][1, 0] = wrong
+            determinant, solution = solved(*tables)
+            assert determinant == 0.0
+            assert not solution.any()

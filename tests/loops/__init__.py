@@ -1,1 +1,1 @@
-"""Closed loops: every mechanism with rods, in Python and in Structured Text, against its closure equations."""
+"""What closed loops alone have: assembly modes, two types of singularities, bounds, machines that cannot be assembled."""

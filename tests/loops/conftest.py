@@ -1,12 +1,20 @@
-"""Every test that asks for a machine runs for every closed loop."""
+"""Every test that asks for a mechanism or its machines runs for every closed loop."""
+
+from __future__ import annotations
 
 import pytest
 
-from tests.loops.machines import LOOPS, Machine, machines_of
+from derive.mechanism import Mechanism
+from tests.mechanisms.loops import LOOPS, LoopMachine, loop_machines_of
 
 
-@pytest.fixture(params=[(m, k) for m in LOOPS for k in range(3)], ids=lambda p: f"{p[0].name}-{p[1]}")
-def machine(request: pytest.FixtureRequest) -> Machine:
-    """A machine of a closed loop."""
-    mechanism, number = request.param
-    return machines_of(mechanism)[number]
+@pytest.fixture(params=LOOPS, ids=lambda m: m.name)
+def mechanism(request: pytest.FixtureRequest) -> Mechanism:
+    """A mechanism with rods."""
+    return request.param
+
+
+@pytest.fixture
+def machines(mechanism: Mechanism) -> tuple[LoopMachine, ...]:
+    """As it is drawn and with unequal dimensions, in both assembly modes."""
+    return loop_machines_of(mechanism)

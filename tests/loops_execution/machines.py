@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -78,6 +78,14 @@ def loops_of(mechanism: Mechanism) -> tuple[Loop, ...]:
         limits |= {f"lower_{joint.key}": float(np.quantile(column, 0.1)), f"upper_{joint.key}": float(np.quantile(column, 0.9))}
     given = {**other.machine.given, **limits, "check_limits": True}
     return nominal, other, _loop(_machine(mechanism, "limited", given), rng)
+
+
+def loop_of(mechanism: Mechanism, label: str, given: Mapping[str, float], axes: Iterable[tuple[float, ...]]) -> Loop:
+    """A machine with samples at axis values that are chosen, whatever they are."""
+    machine, rng = _machine(mechanism, label, given), np.random.default_rng(17)
+    controller = Controller(compiled(mechanism), mechanism)
+    assert controller.initialise(machine.robot.parameters) == OK
+    return Loop(machine, controller, tuple(_sample(machine, list(values), rng) for values in axes), ())
 
 
 def _possible(mechanism: Mechanism, rng: Generator) -> Loop | None:

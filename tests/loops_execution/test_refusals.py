@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
 from tests.execution import test_garbage, test_initialise, test_not_initialised
-from tests.execution.controller import IMPOSSIBLE, NOT_INITIALIZED, OK, Controller
+from tests.execution.comparisons import POSELESS
+from tests.execution.controller import IMPOSSIBLE, NOT_INITIALIZED, OK, UNREACHABLE, Controller
 from tests.execution.twins import Twins
 from tests.execution.units import compiled
+from tests.loops_execution.answers import COMPARISONS
 from tests.loops_execution.machines import Loop
 
 GARBAGE_TESTS = (
@@ -60,17 +63,43 @@ def test_a_matrix_of_another_size_is_refused(loops: tuple[Loop, ...], size: int)
     assert controller.initialise(loops[0].robot.parameters) == NOT_INITIALIZED
 
 
-def test_the_other_storage_order(loops: tuple[Loop, ...]) -> None:
-    """Matrices by columns: the same answers."""
+def test_every_limit_refuses_alone(loops: tuple[Loop, ...]) -> None:
+    """Either end of every axis, and not where limits are not checked."""
     loop = loops[1]
-    controller = Controller(compiled(loop.mechanism, "columns"), loop.mechanism)
-    assert controller.initialise(loop.robot.parameters) == OK
-    for sample in loop.regular[:10]:
-        assert controller.forward(sample.axes) == loop.controller.forward(sample.axes)
-        position, rotation, data = loop.controller.forward(sample.axes)[1]
-        own = data[: len(sample.data)]
-        again = controller.inverse(position, rotation, own, sample.axes)
-        assert again == loop.controller.inverse(position, rotation, own, sample.axes)
+    sample = loop.regular[0]
+    position, rotation, data = loop.controller.forward(sample.axes)[1]
+    own = data[: len(loop.robot.CONFIGURATION)]
+    for joint, value in zip(loop.mechanism.joints, sample.axes, strict=True):
+        for lower, upper, expected in (
+            (value - 1.0, value + 1.0, OK),
+            (value + 1e-3, value + 1.0, UNREACHABLE),
+            (value - 1.0, value - 1e-3, UNREACHABLE),
+        ):
+            limits = {f"lower_{joint.key}": lower, f"upper_{joint.key}": upper}
+            for checked, answer in ((True, expected), (False, OK)):
+                controller = Controller(loop.library, loop.mechanism)
+                assert controller.initialise({**loop.robot.parameters, **limits, "check_limits": checked}) == OK
+                assert controller.inverse(position, rotation, own, sample.axes)[0] == answer
+
+
+def test_a_configuration_that_is_too_small_is_refused(loops: tuple[Loop, ...]) -> None:
+    if len(loops[0].robot.CONFIGURATION) > 1:
+        controller = Controller(test_initialise.without_index_checks(loops[0].mechanism), loops[0].mechanism)
+        assert controller.initialise(loops[0].robot.parameters) == NOT_INITIALIZED
+
+
+def test_every_method_answers_the_same_by_columns(loops: tuple[Loop, ...]) -> None:
+    """The matrix of the controller's library stored the other way."""
+    for loop in loops[1:]:
+        controller = Controller(compiled(loop.mechanism, "columns"), loop.mechanism)
+        assert controller.initialise(loop.robot.parameters) == OK
+        assert controller.block.matrixOrder.lower() == "columns"
+        other = replace(loop, controller=controller)
+        for sample in loop.regular[:8]:
+            assert controller.forward(sample.axes) == loop.controller.forward(sample.axes)
+            for method in COMPARISONS.keys() - POSELESS:
+                if method.lower() in controller.block.routines:
+                    COMPARISONS[method](other, sample)
 
 
 def test_a_loop_that_does_not_close_is_impossible(loops: tuple[Loop, ...]) -> None:

@@ -1,20 +1,26 @@
-"""Every test that asks for a mechanism or its machines runs for the whole catalogue."""
+"""Every test that asks for a mechanism or its machines runs for the whole catalogue.
+
+Tests marked `serial` know a shape of serial arms (an elbow's sine, a hole in the middle): closed loops go through
+tests of the same thing in `tests/loops`. A platform that moves with its whole pose has `test_hexapod.py`.
+"""
 
 from __future__ import annotations
 
 import pytest
 
 from derive.mechanism import Mechanism
+from tests.mechanisms.loops import LOOPS, loop_machines_of
 from tests.mechanisms.machines import MECHANISMS, Machine, machines_of
 
 
-@pytest.fixture(params=MECHANISMS, ids=lambda m: m.name)
-def mechanism(request: pytest.FixtureRequest) -> Mechanism:
-    """A mechanism of the catalogue."""
-    return request.param
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Give `mechanism` its values."""
+    if "mechanism" in metafunc.fixturenames:
+        is_serial = metafunc.definition.get_closest_marker("serial") is not None
+        metafunc.parametrize("mechanism", MECHANISMS if is_serial else (*MECHANISMS, *LOOPS), ids=lambda m: m.name)
 
 
 @pytest.fixture
 def machines(mechanism: Mechanism) -> tuple[Machine, ...]:
     """Its machines."""
-    return machines_of(mechanism)
+    return loop_machines_of(mechanism) if mechanism.rods else machines_of(mechanism)

@@ -9,15 +9,16 @@ from functools import cache, cached_property
 import numpy as np
 import softkin
 from numpy.random import Generator
+from numpy.typing import NDArray
 
 from derive.catalogue import catalogue
 from derive.frames import Motion
 from derive.mechanism import Joint, Mechanism, Parameter, Role
 from tests.mechanisms.closure import Array, Closure
 
-MECHANISMS = tuple(m for _, m in catalogue() if not m.rods)
-"""The serial mechanisms: closed loops go through tests/loops, the hexapod through test_hexapod as well."""
-"""The full pose has tests of its own: `test_hexapod.py`."""
+MECHANISMS = tuple(m for _, m in catalogue() if not m.rods and not m.is_orientation and m.search is None)
+"""The serial mechanisms: machines of closed loops are in `loops.py`, those of a platform in tests/hexapod, orientation
+kinematics in tests/coupling."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
 TURNS = 1000.0
@@ -78,8 +79,11 @@ class Machine:
 
     @property
     def branches_meet_together(self) -> bool:
-        """Whether every branch answers where one does: two roots of one equation do, several equations each have a reach."""
-        return self.robot.BRANCHES <= 1
+        """Whether every branch answers where one does: two roots of one equation do, several equations each have a reach.
+
+        Some working modes of a loop are on its other side.
+        """
+        return self.robot.BRANCHES <= 1 and not self.mechanism.rods
 
     @property
     def is_spatial(self) -> bool:
@@ -111,6 +115,28 @@ class Machine:
     def size(self, axes: Array) -> Array:
         """The size of the motion in every row: the reach, and how far linear axes are out."""
         return self.reach + np.abs(axes - self.closure.offsets)[:, ~self.closure.angles].sum(axis=1)
+
+    def is_possible(self, axes: Array) -> NDArray[np.bool_]:
+        """Whether the machine can be at axis values, and the inverse brings it there: a serial one can be anywhere."""
+        return np.ones(len(axes), dtype=bool)
+
+    def is_own(self, joints: Array, position: Array) -> NDArray[np.bool_]:
+        """Which solutions of the closure are this machine's: of a serial one, all."""
+        return np.ones(len(joints), dtype=bool)
+
+    def own(self, axes: Array) -> NDArray[np.int8]:
+        """The configurations of poses, with open periods."""
+        configurations = self.robot.forward_batch(axes)[2]
+        configurations[:, self.robot.BRANCHES :] = 0
+        return configurations
+
+    def with_axis_at(self, axis: int, value: float, count: int) -> Array:
+        """Regular poses with one axis at a value; a loop cannot be closed at any."""
+        axes = self.draw(20 * count, np.random.default_rng(2))
+        axes[:, axis] = value
+        found = axes[self.is_possible(axes)][:count]
+        assert len(found) == count, f"{self.mechanism.name} {self.label}: {self.mechanism.joints[axis].name} = {value}"
+        return found
 
     def changed(self, **parameters: float) -> softkin.Mechanism:
         """The same robot with other parameters."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
+import pytest
 from softkin import Status
 
 from derive.mechanism import Mechanism, Role, Turning
@@ -25,8 +26,9 @@ PLANE = 1e-6
 
 
 def lengths(machine: Machine) -> list[float]:
-    names = [p.name for p in machine.mechanism.parameters if p.role in (*LENGTHS, Role.DISTANCE)]
-    return [abs(machine.robot.parameters[name]) for name in names]
+    """Of its links: coordinates of a loop, which may be negative, are none."""
+    counted = [p for p in machine.mechanism.parameters if p.role in (*LENGTHS, Role.DISTANCE)]
+    return [abs(machine.robot.parameters[p.name]) for p in counted if p.low >= 0.0 or not machine.mechanism.rods]
 
 
 def turned(machine: Machine, count: int) -> tuple[Array, Array]:
@@ -60,6 +62,7 @@ def squared_sine(machine: Machine, position: Array, rotation: Array) -> Fraction
     return 1 - cosine * cosine
 
 
+@pytest.mark.serial
 def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
     """Stretched and folded, exactly and beside: refused where the squared sine is below -1e-12, and only there."""
     outcomes = set()
@@ -89,6 +92,7 @@ def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
         assert all(locus.branch is None for machine in machines for locus in loci(machine))
 
 
+@pytest.mark.serial
 def test_where_two_branches_meet_in_space(machines: tuple[Machine, ...]) -> None:
     """On the one side of a fold both answer, however near; on the other none does, but for rounding."""
     folds = 0
@@ -126,6 +130,7 @@ def alone(machine: Machine, locus: Locus) -> Array:
     return axes[(np.delete(indicators, locus.branch or 0, axis=1) > 0.1).all(axis=1)]
 
 
+@pytest.mark.serial
 def test_far_away(machines: tuple[Machine, ...]) -> None:
     """An arm does not reach the largest number; a gantry and a boom do."""
     for machine in machines:
@@ -137,6 +142,8 @@ def test_far_away(machines: tuple[Machine, ...]) -> None:
 
 def test_the_plane_of_a_planar_machine(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     """Met within 1e-6 of the sum of the lengths; a machine without lengths has one user's unit."""
+    if mechanism.rods and "z" in mechanism.task.position:
+        return  # another height is another pose
     for machine in machines:
         axes = machine.draw(40, np.random.default_rng(3))
         positions, rotations = machine.closure.poses(axes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from softkin import Status
 
 from derive.mechanism import Mechanism
@@ -46,9 +47,10 @@ def test_turns_are_counted_at_their_edges(machines: tuple[Machine, ...]) -> None
     """An edge belongs to the turn above it, in spite of rounding: so does what is 1e-10 below."""
     for machine in machines:
         for column, axis in enumerate(turning(machine.mechanism), machine.robot.BRANCHES):
-            axes = machine.draw(7, np.random.default_rng(2))
+            first = machine.with_axis_at(axis, 180.0, 7)
             for edge, above in ((-180.0, 1), (180.0, 2), (540.0, 3), (-540.0, -1)):
                 below = {1: -1, -1: -2}.get(above, above - 1)
+                axes = first.copy()
                 axes[:, axis] = edge + np.array([-1e-4, -1e-8, -1e-10, 0.0, 1e-10, 1e-8, 1e-4])
                 positions, rotations, configurations, _ = forward(machine.robot, axes)
                 assert configurations[:, column].tolist() == [below, below, above, above, above, above, above]
@@ -66,8 +68,8 @@ def test_a_named_turn_is_where_the_axis_is_put(machines: tuple[Machine, ...]) ->
     for machine in machines:
         robot = machine.changed(check_limits=False)
         for column, axis in enumerate(turning(machine.mechanism), robot.BRANCHES):
-            axes = machine.draw(5, np.random.default_rng(3))
-            axes[:, axis] = 360.0 * np.array([126, -127, 127, -128, 1000]) + 17.0
+            axes = machine.with_axis_at(axis, 17.0, 5)
+            axes[:, axis] += 360.0 * np.array([126, -127, 127, -128, 1000])
             positions, rotations, configurations, _ = forward(robot, axes)
             assert configurations[:, column].tolist() == [127, -127, 0, 0, 0]
             nearest = axes.copy()
@@ -90,6 +92,7 @@ def test_negative_bytes_may_be_given_unsigned(machines: tuple[Machine, ...]) -> 
         assert np.abs(found - axes).max() < 1e-9
 
 
+@pytest.mark.serial
 def test_where_branches_coincide_the_byte_is_3(machines: tuple[Machine, ...]) -> None:
     """Stretched and folded exactly; 1e-9 away the branch has a sign."""
     for machine in machines:
@@ -112,7 +115,8 @@ def test_wrong_bytes_are_refused(machines: tuple[Machine, ...]) -> None:
         positions, rotations = machine.closure.poses(axes)
         frame = positions[0], rotations[0]
         size = len(robot.CONFIGURATION)
-        good = list(robot.DEFAULT_CONFIGURATION)
+        own = machine.own(axes)
+        good = own[2].tolist()
         wrongs: list[object] = [[*good, 1], [*good, 0, 0], 7]
         if size:
             wrongs += [good[:-1], [300] * size, [-129] * size, [1.5] * size, ["1"] * size, "1" * size, [None] * size]
@@ -123,10 +127,10 @@ def test_wrong_bytes_are_refused(machines: tuple[Machine, ...]) -> None:
                 wrong = list(good)
                 wrong[branch] = byte
                 assert refusal(robot.inverse, frame, wrong) is Status.BAD_INPUT
-                table = np.tile(good, (5, 1))
+                table = own.astype(int)
                 table[2, branch] = byte
                 found, statuses = robot.inverse_batch(positions, rotations, table)
-                clean, expected = robot.inverse_batch(positions, rotations)
+                clean, expected = robot.inverse_batch(positions, rotations, own)
                 assert statuses[2] == Status.BAD_INPUT
                 assert np.isnan(found[2]).all()
                 assert (np.delete(statuses, 2) == np.delete(expected, 2)).all()

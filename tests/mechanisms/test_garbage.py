@@ -31,8 +31,7 @@ NO_ROTATIONS = {
 
 def some(machines: tuple[Machine, ...]) -> tuple[Machine, Array, Array, Array]:
     machine = machines[-1]
-    axes = machine.draw(200, np.random.default_rng(1))
-    axes = axes[machine.robot.inverse_batch(*machine.closure.poses(axes))[1] == Status.OK][:7]
+    axes = machine.draw(7, np.random.default_rng(1))
     return (machine, axes, *machine.closure.poses(axes))
 
 
@@ -70,7 +69,8 @@ def test_too_few_or_too_many_axes(machines: tuple[Machine, ...]) -> None:
 def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine, ...]) -> None:
     machine, axes, positions, rotations = some(machines)
     robot = machine.robot
-    clean = robot.inverse_batch(positions, rotations)[0]
+    own = machine.own(axes)
+    clean = robot.inverse_batch(positions, rotations, own)[0]
     for i in range(3):
         for number in NUMBERS:
             wrong = positions.copy()
@@ -79,7 +79,7 @@ def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine,
             found = robot.inverse_all((wrong[2], rotations[2]))
             assert [s.status for s in found] == [Status.BAD_INPUT] * 2**robot.BRANCHES
             assert all(s.axes is None for s in found)
-            got, statuses = robot.inverse_batch(wrong, rotations)
+            got, statuses = robot.inverse_batch(wrong, rotations, own)
             assert statuses.tolist() == [0, 0, Status.BAD_INPUT, 0, 0, 0, 0]
             assert np.isnan(got[2]).all()
             assert (np.delete(got, 2, axis=0) == np.delete(clean, 2, axis=0)).all()
@@ -87,7 +87,7 @@ def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine,
         for number in NUMBERS:
             references = np.zeros_like(axes)
             references[4, i] = number
-            statuses = robot.inverse_batch(positions, rotations, None, references)[1]
+            statuses = robot.inverse_batch(positions, rotations, own, references)[1]
             read = statuses[4] == Status.BAD_INPUT
             assert (np.delete(statuses, 4) == Status.OK).all()
             assert read or (statuses[4] == Status.OK and not joint.multi_turn)  # a linear axis has one value
@@ -98,19 +98,19 @@ def test_positions_and_references_of_no_reasonable_size(machines: tuple[Machine,
 @pytest.mark.parametrize("what", [*NO_ROTATIONS, *(f"{n}" for n in NUMBERS)])
 def test_frames_that_are_no_rotation(machines: tuple[Machine, ...], what: str) -> None:
     """Refused where the rotation is read; not looked at where it is not."""
-    machine, _, positions, rotations = some(machines)
-    robot = machine.robot
+    machine, axes, positions, rotations = some(machines)
+    robot, own = machine.robot, machine.own(axes)
     wrongs = [NO_ROTATIONS[what] @ rotations[3]] if what in NO_ROTATIONS else []
     if not wrongs:
         for i in range(9):
             entries = rotations[3].copy()
             entries.flat[i] = float(what)
             wrongs.append(entries)
-    clean = robot.inverse_batch(positions, rotations)[0]
+    clean = robot.inverse_batch(positions, rotations, own)[0]
     for wrong in wrongs:
         table = rotations.copy()
         table[3] = wrong
-        got, statuses = robot.inverse_batch(positions, table)
+        got, statuses = robot.inverse_batch(positions, table, own)
         if robot.READS_ROTATION:
             assert statuses.tolist() == [0, 0, 0, Status.BAD_INPUT, 0, 0, 0]
             assert np.isnan(got[3]).all()
@@ -121,30 +121,30 @@ def test_frames_that_are_no_rotation(machines: tuple[Machine, ...], what: str) -
         else:
             assert (statuses == Status.OK).all()
             assert (got == clean).all()
-            assert np.allclose(robot.inverse((positions[3], wrong)), clean[3], rtol=0, atol=1e-10)
+            assert np.allclose(robot.inverse((positions[3], wrong), own[3].tolist()), clean[3], rtol=0, atol=1e-10)
 
 
 def test_a_rotation_within_the_tolerance_is_one(machines: tuple[Machine, ...]) -> None:
-    machine, _, positions, rotations = some(machines)
     """A heading does not see its size; a wrist is as much further away as the rotation is longer."""
-    stretch = 4e-7
-    stretched = rotations * (1 + stretch)
-    found, statuses = machine.robot.inverse_batch(positions, stretched)
+    machine, axes, positions, rotations = some(machines)
+    own, stretch = machine.own(axes), 4e-7
+    found, statuses = machine.robot.inverse_batch(positions, rotations * (1 + stretch), own)
     assert (statuses == Status.OK).all()
-    tolerance = 1e-9 if machine.closure.follows_turn else 100.0 * stretch * machine.reach
-    assert np.abs(found - machine.robot.inverse_batch(positions, rotations)[0]).max() < tolerance
+    tolerance = 100.0 * stretch * machine.reach if machine.closure.follows_rotation and machine.is_spatial else 1e-9
+    assert np.abs(found - machine.robot.inverse_batch(positions, rotations, own)[0]).max() < tolerance
 
 
 def test_whether_the_rotation_is_read_is_said(machines: tuple[Machine, ...]) -> None:
-    machine, _, positions, rotations = some(machines)
-    robot = machine.robot
+    machine, axes, positions, rotations = some(machines)
+    robot, own = machine.robot, machine.own(axes)
     assert machine.closure.follows_rotation == robot.READS_ROTATION
     if robot.READS_ROTATION:
         assert refusal(robot.inverse_batch, positions) is Status.BAD_INPUT
         assert refusal(robot.inverse, (positions[0], None)) is Status.BAD_INPUT
     else:
-        assert (robot.inverse_batch(positions)[1] == Status.OK).all()
-        assert robot.inverse((positions[0], None)) == robot.inverse((positions[0], rotations[0]))
+        assert (robot.inverse_batch(positions, None, own)[1] == Status.OK).all()
+        code = own[0].tolist()
+        assert robot.inverse((positions[0], None), code) == robot.inverse((positions[0], rotations[0]), code)
 
 
 def test_what_has_not_the_form_of_a_frame(machines: tuple[Machine, ...]) -> None:

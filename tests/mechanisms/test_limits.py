@@ -165,6 +165,7 @@ def test_a_wider_range_refuses_and_does_not_choose_again(machines: tuple[Machine
             assert robot.inverse_batch(positions, rotations, configuration, near)[1][0] == Status.UNREACHABLE
 
 
+@pytest.mark.serial
 def test_an_open_branch_is_chosen_before_limits(machines: tuple[Machine, ...]) -> None:
     """The nearest branch is outside, the other inside: refused, by name it would have been found."""
     for machine in fitting(machines):

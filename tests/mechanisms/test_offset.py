@@ -64,7 +64,7 @@ def drawn(machine: Machine, seed: int) -> tuple[Array, Array]:
 
 def test_who_offers_it(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     for machine in machines:
-        expected = mechanism.name not in WITHOUT and mechanism.task.turning is not Turning.FULL
+        expected = mechanism.name not in WITHOUT and mechanism.task.turning not in (Turning.DIRECTION, Turning.FULL)
         assert hasattr(machine.robot, "inverse_offset") == expected
         assert hasattr(machine.robot, "configuration_offset") == expected
 
@@ -96,11 +96,11 @@ def test_every_branch_brings_the_point_there(machines: tuple[Machine, ...]) -> N
             answered = np.isfinite(found[:, 0])
             found = found[answered]
             missed = (points(machine, found, offsets[answered]) - places[answered])[:, machine.closure.task]
-            assert np.abs(missed).max() < 1e-11 * machine.reach
+            assert np.abs(missed).max(initial=0.0) < 1e-11 * machine.reach
             assert np.abs(machine.closure.joints(found)[:, frozen] - kept[answered]).max(initial=0.0) < 1e-10
             if byte in (1, 2) and robot.BRANCHES:
                 bytes_ = [robot.configuration_offset(f, o) for f, o in zip(found, offsets[answered], strict=True)]
-                assert {b[: robot.BRANCHES] for b in bytes_} == {(byte,) * robot.BRANCHES}
+                assert {b[: robot.BRANCHES] for b in bytes_} <= {(byte,) * robot.BRANCHES}
             assert answered.all() or (byte in (1, 2) and not machine.branches_meet_together)
 
 

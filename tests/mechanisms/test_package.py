@@ -49,7 +49,7 @@ def test_import_is_cheap_and_needs_no_numpy() -> None:
 def test_the_catalogue_is_the_descriptions() -> None:
     assert set(softkin.catalogue()) == {m.name for _, m in catalogue()}
     assert "Kin_Scara4_ZCCC" in softkin.catalogue()
-    assert len(softkin.catalogue()) == 36
+    assert len(softkin.catalogue()) == 43
 
 
 def test_everything_that_is_offered_is_there() -> None:
@@ -110,6 +110,8 @@ def test_parameters_are_those_of_the_description(mechanism: Mechanism, machines:
     expected += [f"offset_{j.key}" for j in mechanism.joints]
     keys = [j.key for j in mechanism.joints] + [q.name for q in mechanism.limited]
     expected += [f"{word}_{key}" for key in keys for word in ("lower", "upper")]
+    if mechanism.assembly is not None:
+        expected += [f"{mechanism.assembly.name}_{mechanism.assembly.names[1]}", "min_type2_margin"]
     assert [p.name for p in machines[0].robot.PARAMETERS] == [*expected, "check_limits"]
     assert all(p.meaning and p.range for p in machines[0].robot.PARAMETERS)
 

@@ -28,6 +28,7 @@ def test_every_number_must_be_one(machines: tuple[Machine, ...]) -> None:
             refused(machines[1], parameter.name, **{parameter.name: value})
 
 
+@pytest.mark.serial
 def test_ranges(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     """Just inside is accepted, just outside refused: the ends belong to the range, but no length is zero."""
     machine = machines[0]
@@ -67,8 +68,10 @@ def test_ranges_of_the_vendor() -> None:
 
 def test_lengths_must_be_given_and_nothing_else_need_be(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     robot_class = type(machines[0].robot)
-    lengths = {p.name: p.nominal for p in mechanism.parameters if p.role in LENGTHS}
-    robot_class(**lengths)
+    lengths = {p.name: p.nominal for p in mechanism.parameters if p.default is None}
+    assert {p.name for p in mechanism.parameters if p.role is Role.LENGTH} <= set(lengths)
+    rails = {p.name: p.nominal for p in mechanism.parameters if p.name.startswith("rail_") and p.default is not None}
+    robot_class(**lengths, **rails)  # rails that are not given all lie on the origin: one or two may, three may not
     for name in lengths:
         with pytest.raises(TypeError, match=name):
             robot_class(**{k: v for k, v in lengths.items() if k != name})
@@ -84,8 +87,9 @@ def test_defaults_are_the_ones_it_says(mechanism: Mechanism, machines: tuple[Mac
         expected = machines[0].given.get(parameter.name, parameter.default)
         assert robot.parameters[parameter.name] == expected
         own = next((p for p in mechanism.parameters if p.name == parameter.name), None)
-        usual = {"check_limits": 1.0}.get(parameter.name, 0.0)
-        assert parameter.default == (usual if own is None else {**dict.fromkeys(LENGTHS), Role.SIGN: 1.0}.get(own.role, 0.0))
+        usual = {"check_limits": 1.0, "min_type2_margin": 1e-3}.get(parameter.name, 0.0)
+        by_role = {**dict.fromkeys((*LENGTHS, Role.ANGLE)), Role.SIGN: 1.0}
+        assert parameter.default == (usual if own is None else by_role.get(own.role, 0.0))
 
 
 def test_limits_must_be_in_order(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
@@ -110,6 +114,7 @@ def test_signs_and_flags(mechanism: Mechanism, machines: tuple[Machine, ...]) ->
             refused(machines[0], name, **{name: value})
 
 
+@pytest.mark.serial
 def test_a_coupling_is_given_once(machines: tuple[Machine, ...]) -> None:
     for machine in machines:
         for constraint in machine.mechanism.constraints:

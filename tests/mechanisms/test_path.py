@@ -14,6 +14,8 @@ from tests.mechanisms.closure import Array
 from tests.mechanisms.machines import Machine
 from tests.mechanisms.paths import straight, tour
 
+pytestmark = pytest.mark.serial
+
 STEPS = 10_000
 TOLERANCE = 1e-8
 """Degrees or lengths: the way is regular, and errors do not add up."""

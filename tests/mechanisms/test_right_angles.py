@@ -14,6 +14,8 @@ from tests.mechanisms.machines import Machine, machine
 from tests.mechanisms.refusals import refusal
 from tests.mechanisms.test_round_trip import slots
 
+pytestmark = pytest.mark.serial
+
 ANGLES = tuple(90.0 * k for k in range(-4, 5))
 ONE_TURN = (-90.0, 0.0, 90.0, 180.0)
 """Of a machine with so many axes that more turns would be too many."""

@@ -16,6 +16,8 @@ from tests.mechanisms.self_motion import is_free
 from tests.mechanisms.test_boundary import alone
 from tests.mechanisms.test_round_trip import slots
 
+pytestmark = pytest.mark.serial
+
 SHIFTS = (0.0, *(s * 10.0**-k for k in range(4, 13) for s in (1, -1)))
 """How far from a singularity, in radians or per reach."""
 REGULAR, NEAR = 1e-12, 1e-10

@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from softkin._core import Mechanism
+from softkin._coupled import Coupled
 from softkin._types import (
     Axis,
     ConfigurationByte,
@@ -23,10 +24,13 @@ from softkin._types import (
 )
 
 if TYPE_CHECKING:
+    from softkin.ac6_rzryryrxryrz_j6offset import Ac6RZRYRYRXRYRZJ6Offset
     from softkin.ac6_threeparallel import Ac6ThreeParallel
     from softkin.ac6_txtytzryrxrz import Ac6TXTYTZRYRXRZ
     from softkin.articulatedrobot_6dof import ArticulatedRobot6DOF
     from softkin.bipod_rotary import BipodRotary
+    from softkin.caxis import CAxis
+    from softkin.caxis_tool import CAxisTool
     from softkin.crane import Crane
     from softkin.delta_p3c_type3 import DeltaP3CType3
     from softkin.gantry2 import Gantry2
@@ -36,6 +40,7 @@ if TYPE_CHECKING:
     from softkin.hexapod import Hexapod
     from softkin.hgantry2 import HGantry2
     from softkin.hgantry3 import HGantry3
+    from softkin.kin_5axes import Kin5Axes
     from softkin.mc_kin_type_12_xy import KinType12XY
     from softkin.p2c_type1 import P2CType1
     from softkin.p2c_type2 import P2CType2
@@ -56,20 +61,27 @@ if TYPE_CHECKING:
     from softkin.sccc import SCCC
     from softkin.tgantry2 import TGantry2
     from softkin.tgantry3 import TGantry3
+    from softkin.tool import Tool
     from softkin.tripod_linear import TripodLinear
     from softkin.tripod_p3z import TripodP3Z
     from softkin.tripod_rotary import TripodRotary
+    from softkin.wrist2 import Wrist2
+    from softkin.wrist3 import Wrist3
 
 __all__ = [
     "P2Y",
     "PCC",
     "SCCC",
+    "Ac6RZRYRYRXRYRZJ6Offset",
     "Ac6TXTYTZRYRXRZ",
     "Ac6ThreeParallel",
     "ArticulatedRobot6DOF",
     "Axis",
     "BipodRotary",
+    "CAxis",
+    "CAxisTool",
     "ConfigurationByte",
+    "Coupled",
     "Crane",
     "DeltaP3CType3",
     "Frame",
@@ -80,6 +92,7 @@ __all__ = [
     "HGantry2",
     "HGantry3",
     "Hexapod",
+    "Kin5Axes",
     "KinType12XY",
     "KinematicsError",
     "Mechanism",
@@ -104,17 +117,23 @@ __all__ = [
     "Status",
     "TGantry2",
     "TGantry3",
+    "Tool",
     "TripodLinear",
     "TripodP3Z",
     "TripodRotary",
+    "Wrist2",
+    "Wrist3",
     "catalogue",
 ]
 
 _CLASSES: dict[str, tuple[str, str]] = {
+    "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": ("ac6_rzryryrxryrz_j6offset", "Ac6RZRYRYRXRYRZJ6Offset"),
     "Kin_Ac6_ThreeParallel": ("ac6_threeparallel", "Ac6ThreeParallel"),
     "Kin_Ac6_TXTYTZRYRXRZ": ("ac6_txtytzryrxrz", "Ac6TXTYTZRYRXRZ"),
     "Kin_ArticulatedRobot_6DOF": ("articulatedrobot_6dof", "ArticulatedRobot6DOF"),
     "Kin_Bipod_Rotary": ("bipod_rotary", "BipodRotary"),
+    "Kin_CAxis": ("caxis", "CAxis"),
+    "Kin_CAxis_Tool": ("caxis_tool", "CAxisTool"),
     "Kin_Crane": ("crane", "Crane"),
     "Kin_Delta_P3C_Type3": ("delta_p3c_type3", "DeltaP3CType3"),
     "Kin_Gantry2": ("gantry2", "Gantry2"),
@@ -124,6 +143,7 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_Hexapod": ("hexapod", "Hexapod"),
     "Kin_HGantry2": ("hgantry2", "HGantry2"),
     "Kin_HGantry3": ("hgantry3", "HGantry3"),
+    "Kin_5Axes": ("kin_5axes", "Kin5Axes"),
     "MC_KIN_TYPE_12_XY": ("mc_kin_type_12_xy", "KinType12XY"),
     "Kin_P2C_Type1": ("p2c_type1", "P2CType1"),
     "Kin_P2C_Type2": ("p2c_type2", "P2CType2"),
@@ -144,9 +164,12 @@ _CLASSES: dict[str, tuple[str, str]] = {
     "Kin_SCCC": ("sccc", "SCCC"),
     "Kin_TGantry2": ("tgantry2", "TGantry2"),
     "Kin_TGantry3": ("tgantry3", "TGantry3"),
+    "Kin_Tool": ("tool", "Tool"),
     "Kin_Tripod_Linear": ("tripod_linear", "TripodLinear"),
     "Kin_Tripod_P3Z": ("tripod_p3z", "TripodP3Z"),
     "Kin_Tripod_Rotary": ("tripod_rotary", "TripodRotary"),
+    "Kin_Wrist2": ("wrist2", "Wrist2"),
+    "Kin_Wrist3": ("wrist3", "Wrist3"),
 }
 """The module and the class of every mechanism."""
 _MODULES = {class_name: module for module, class_name in _CLASSES.values()}

@@ -14,7 +14,7 @@ from softkin._scalar import DEGREE
 from softkin._types import Status
 
 __all__ = [
-    "DEGREE", "Array", "Codes", "Programs", "Real", "Reals", "Rotation", "Vector",
+    "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Vector",
     "StartedPrograms", "absolute", "advanced", "atan2", "cos", "initial", "nearest_on_arc", "nearest_period", "passed",
     "require", "root", "select", "settled", "sin", "solve",
 ]  # fmt: skip
@@ -61,9 +61,17 @@ class StartedPrograms(Programs):
         """Forward kinematics from a given start."""
 
 
+class OrientationPrograms(Programs):
+    """The same of an orientation kinematics."""
+
+    @abstractmethod
+    def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
+        """From a flange that turns to the end point."""
+
+
 def passed(values: tuple[Real, ...]) -> Codes:
-    """The statuses of rows before any condition: all OK."""
-    return np.zeros(np.shape(values[0]), np.uint8)
+    """The statuses of rows before any condition: all OK. One for all rows where there are no values."""
+    return np.zeros(np.shape(values[0]) if values else (), np.uint8)
 
 
 def require(status: Codes, condition: Truth, otherwise: Status) -> None:
@@ -136,12 +144,16 @@ def nearest_on_arc(angle: Real, centre: Real, half: Real) -> Real:
 
 
 def solve(matrix: Sequence[Reals], right: Sequence[Reals]) -> Reals:
-    """The determinant, then the solution by rows: LU decomposition with partial pivoting. Zeros for a singular matrix."""
+    """The determinant, then the solution by rows: LU decomposition with partial pivoting.
+
+    Zeros where the matrix is singular, and where a number is none, or beyond 1e30 in size.
+    """
     size = len(matrix)
     rows = [[*row, *more] for row, more in zip(matrix, right or [()] * size, strict=True)]
     table = np.array(np.broadcast_arrays(*(entry for row in rows for entry in row))).reshape(size, len(rows[0]), -1)
-    tiny = 1e-14 * np.max(np.abs(table[:, :size]), axis=(0, 1))
-    determinant, regular = np.ones_like(tiny), np.ones(tiny.shape, np.bool_)
+    largest = np.max(np.abs(table[:, :size]), axis=(0, 1))
+    tiny, determinant = 1e-14 * largest, np.ones_like(largest)
+    regular = np.all(np.abs(table) <= 1e30, axis=(0, 1)) & (largest >= 1.0 / 1e30)
     every = np.arange(len(tiny))
     for k in range(size):
         best = k + np.argmax(np.abs(table[k:, k]), axis=0)

@@ -63,9 +63,9 @@ def _poses(robot: Mechanism, values: Array, program: Callable[[slice], _Poses]) 
         for i in range(3):
             _write(rotations[rows, i], rotation[i], failed)
         written = configurations[rows]
-        for i, measure in enumerate(measures):
+        for i, measure in zip(robot._branch_bytes, measures, strict=True):
             written[:, i] = _branch_bytes(measure)
-        for i, axis in enumerate(robot.PERIOD_AXES, robot.BRANCHES):
+        for i, axis in zip(robot._period_bytes, robot.PERIOD_AXES, strict=True):
             written[:, i] = _periods(values[rows, axis])
         written[failed] = 0
         statuses[rows] = status
@@ -85,7 +85,8 @@ def inverse(
     count, width = len(points), len(robot.AXES)
     codes, are_bytes = _configurations(robot, configurations, count)
     near = numbers(np.zeros(width) if references is None else references, count, (width,), "references")
-    parts = [points, near, codes[:, robot.BRANCHES :].astype(np.float64)]
+    branches = codes[:, robot._branch_bytes]
+    parts = [points, near, codes[:, robot._period_bytes].astype(np.float64)]
     if robot.READS_ROTATION:
         if rotations is None:
             raise KinematicsError(Status.BAD_INPUT, f"{robot.NAME}: rotations are needed: this mechanism reads them")
@@ -94,7 +95,7 @@ def inverse(
     for rows in _chunks(count):
         table = np.ascontiguousarray(np.concatenate([part[rows] for part in parts], axis=1).T)
         with np.errstate(all="ignore"):
-            found, status = _nearest(robot, programs, table, codes[rows, : robot.BRANCHES], are_bytes[rows])
+            found, status = _nearest(robot, programs, table, branches[rows], are_bytes[rows])
             if robot.checks_limits:
                 status = np.where(status == Status.OK, programs.limits(tuple(found)), status)
         _write(axes[rows], tuple(found), status != Status.OK)
@@ -141,7 +142,7 @@ def _inputs(robot: Mechanism, table: Array) -> tuple[tuple[Array, Array, Array],
 def _configurations(robot: Mechanism, given: ArrayLike | None, count: int) -> tuple[Integers, NDArray[np.bool_]]:
     """The signed bytes of every row, and whether they are bytes of a configuration."""
     codes = signed_bytes(robot.DEFAULT_CONFIGURATION if given is None else given, count, len(robot.CONFIGURATION))
-    branches = codes[:, : robot.BRANCHES]
+    branches = codes[:, robot._branch_bytes]
     in_range = np.all((codes >= -128) & (codes <= 127), axis=1)
     return codes, in_range & np.all((branches >= AUTOMATIC) & (branches <= COINCIDE), axis=1)
 

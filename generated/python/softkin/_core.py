@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping
 from math import nan
 from types import MappingProxyType
-from typing import TYPE_CHECKING, ClassVar, NoReturn, TypeAlias
+from typing import TYPE_CHECKING, NoReturn, TypeAlias
 
 from softkin._configuration import TIE, branch_byte, period, slots, squared_distance
 from softkin._input import bytes_of, parameter_value, position_of, reals, rotation_of, unusable
@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 SINGULAR = 0.001
 """A pose is singular where a margin is smaller than this in size."""
 
+TWIST = ("x", "y", "z", "turn x", "turn y", "turn z")
+"""The rows of a twist: along and about the axes of the machine."""
 _IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 Pose: TypeAlias = tuple[Vector, Rotation, Reals]
@@ -56,24 +58,28 @@ class Mechanism(ABC):
 
     __slots__ = ("checks_limits", "parameters")
 
-    NAME: ClassVar[str]
+    NAME: str
     """The name of the function block and of the entry in `catalogue()`."""
-    AXES: ClassVar[tuple[Axis, ...]]
-    PARAMETERS: ClassVar[tuple[Parameter, ...]]
-    CONFIGURATION: ClassVar[tuple[ConfigurationByte, ...]]
-    DEFAULT_CONFIGURATION: ClassVar[Configuration]
-    JACOBIAN_ROWS: ClassVar[tuple[str, ...]]
-    """What the rows of the Jacobian are: `x`, `y`, `z`, `turn z`."""
-    MARGINS: ClassVar[tuple[str, ...]]
+    AXES: tuple[Axis, ...]
+    PARAMETERS: tuple[Parameter, ...]
+    CONFIGURATION: tuple[ConfigurationByte, ...]
+    DEFAULT_CONFIGURATION: Configuration
+    JACOBIAN_ROWS: tuple[str, ...]
+    """What the rows of the Jacobian are: along `x`, `y`, `z`; `turn x`, `turn y`, `turn z` about the axes of the
+    machine; `tilt x`, `tilt y` about those of the tool."""
+    MARGINS: tuple[str, ...]
     """The names of the singularity margins."""
-    READS_ROTATION: ClassVar[bool]
+    READS_ROTATION: bool
     """Whether the inverse looks at the commanded rotation."""
-    FREEDOM: ClassVar[str]
-    BRANCHES: ClassVar[int]
+    FREEDOM: str
+    """How many degrees of freedom the rotation of the frame has: `zero`, `one` or `three`."""
+    ROLE: str
+    """`position` (it can carry an orientation kinematics), `orientation` (it has to be carried), or `complete`."""
+    BRANCHES: int
     """How many bytes of the configuration are branches; they come first."""
-    PERIOD_AXES: ClassVar[tuple[int, ...]]
+    PERIOD_AXES: tuple[int, ...]
     """The axes of the period bytes, by index."""
-    DISTANCE_AXES: ClassVar[tuple[int, ...]]
+    DISTANCE_AXES: tuple[int, ...]
     """The axes that decide an automatic choice, by index."""
 
     parameters: Mapping[str, float]
@@ -161,9 +167,9 @@ class Mechanism(ABC):
             axes = self._branch(position, rows, signs, open_turns, near)
             status = axes if isinstance(axes, Status) else self._limit_status(axes)
             if isinstance(axes, Status) or status is not Status.OK:
-                found.append(Solution(branches + (0,) * len(self.PERIOD_AXES), None, status))
+                found.append(Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, status))
             else:
-                found.append(Solution(branches + self._periods(axes), axes, status))
+                found.append(Solution(self._joined(branches, self._periods(axes)), axes, status))
         return tuple(found)
 
     def jacobian(self, axes: Numbers) -> Matrix:
@@ -233,6 +239,20 @@ class Mechanism(ABC):
         found = bytes_of(configuration, len(self.CONFIGURATION))
         return found[: self.BRANCHES], found[self.BRANCHES :]
 
+    @property
+    def _branch_bytes(self) -> list[int]:
+        """The places of the branch bytes in the configuration."""
+        return list(range(self.BRANCHES))
+
+    @property
+    def _period_bytes(self) -> list[int]:
+        """The places of the period bytes."""
+        return list(range(self.BRANCHES, len(self.CONFIGURATION)))
+
+    def _joined(self, branches: Configuration, periods: Configuration) -> Configuration:
+        """The configuration of branch bytes and period bytes."""
+        return branches + periods
+
     def _written(self, measures: Reals, axes: Reals) -> Configuration:
         """The configuration of a pose."""
         return tuple(map(branch_byte, measures)) + self._periods(axes)
@@ -289,6 +309,14 @@ class Mechanism(ABC):
 
     @abstractmethod
     def _jacobian(self, axes: Reals) -> Matrix | Status: ...
+
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The six rows of the twist: of a frame that keeps its orientation, those of the Jacobian."""
+        rows = self._jacobian(axes)
+        if isinstance(rows, Status):
+            return rows
+        known = dict(zip(self.JACOBIAN_ROWS, rows, strict=True))
+        return tuple(known.get(row, (0.0,) * len(axes)) for row in TWIST)
 
     @abstractmethod
     def _image(self) -> Image | Status: ...

@@ -41,18 +41,22 @@ def nearest_on_arc(angle: float, centre: float, half: float) -> float:
 
 
 def solve(matrix: Sequence[Sequence[float]], right: Sequence[Sequence[float]]) -> tuple[float, ...]:
-    """The determinant, then the solution by rows: LU decomposition with partial pivoting. Zeros for a singular matrix.
+    """The determinant, then the solution by rows: LU decomposition with partial pivoting.
 
+    Zeros where the matrix is singular, and where a number is none, or beyond 1e30 in size.
     matrix, right: by rows; without right-hand sides the determinant alone.
     """
     rows = [[*row, *more] for row, more in zip(matrix, right or [()] * len(matrix), strict=True)]
     size, width = len(matrix), len(rows[0])
-    tiny = 1e-14 * max(abs(entry) for row in matrix for entry in row)
+    nothing = (0.0,) * (1 + size * (width - size))
+    largest = max(abs(entry) for row in matrix for entry in row)
+    if not (largest >= 1.0 / 1e30 and all(abs(entry) <= 1e30 for row in rows for entry in row)):
+        return nothing
     determinant = 1.0
     for k in range(size):
         best = max(range(k, size), key=lambda i: abs(rows[i][k]))
-        if not abs(rows[best][k]) > tiny:
-            return (0.0,) * (1 + size * (width - size))
+        if not abs(rows[best][k]) > 1e-14 * largest:
+            return nothing
         if best != k:
             rows[k], rows[best] = rows[best], rows[k]
             determinant = -determinant

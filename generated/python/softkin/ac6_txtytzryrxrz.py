@@ -208,6 +208,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     MARGINS = ("a4_parallel_a6",)
     READS_ROTATION = True
     FREEDOM = "three"
+    ROLE = "complete"
     BRANCHES = 1
     PERIOD_AXES = (3, 4, 5)
     DISTANCE_AXES = (3, 4, 5)

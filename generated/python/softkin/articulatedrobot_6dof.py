@@ -248,6 +248,7 @@ class ArticulatedRobot6DOF(Mechanism):
     MARGINS = ("wrist_on_axis_1", "elbow", "a4_parallel_a6")
     READS_ROTATION = True
     FREEDOM = "three"
+    ROLE = "complete"
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2, 3, 4, 5)
     DISTANCE_AXES = (0, 1, 2, 3, 4, 5)

@@ -130,6 +130,7 @@ class Crane(OffsetKinematics):
     MARGINS = ("free_theta", "free_phi")
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = (1,)
     DISTANCE_AXES = (1, 2)

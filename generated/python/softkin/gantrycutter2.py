@@ -132,6 +132,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     MARGINS = ()
     READS_ROTATION = True
     FREEDOM = "one"
+    ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = (2,)
     DISTANCE_AXES = (2,)
@@ -357,6 +358,23 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_x, axis_y, axis_r = axes
+        k = self._constants
+        direction_r = k.direction_r
+        # numbers of reasonable size
+        if not (abs(axis_r) <= 1e9 and abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9):
+            return Status.BAD_INPUT
+        return (
+            (1.0, 0.0, 0.0),
+            (0.0, 1.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, direction_r),
+        )
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""

@@ -130,6 +130,7 @@ class HGantry2(OffsetKinematics):
     MARGINS = ()
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1)

@@ -154,6 +154,7 @@ class P2CType2(OffsetKinematics):
     MARGINS = ("stretched_1", "stretched_2", "arms_aligned")
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 2
     PERIOD_AXES = (0, 1)
     DISTANCE_AXES = (0, 1)

@@ -152,6 +152,7 @@ class P2XType1(OffsetKinematics):
     MARGINS = ("upright_1", "upright_2", "arms_aligned")
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 2
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1)

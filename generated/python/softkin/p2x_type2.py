@@ -126,6 +126,7 @@ class P2XType2(OffsetKinematics):
     MARGINS = ("meet_a2", "flat")
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1)

@@ -129,6 +129,7 @@ class P2Y(OffsetKinematics):
     MARGINS = ()
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1)

@@ -142,6 +142,7 @@ class PCC(OffsetKinematics):
     MARGINS = ("elbow",)
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (0, 1)
     DISTANCE_AXES = (0, 1)

@@ -127,6 +127,7 @@ class PolarZ(Mechanism):
     MARGINS = ("free_c",)
     READS_ROTATION = False
     FREEDOM = "one"
+    ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = (0,)
     DISTANCE_AXES = (0,)
@@ -347,6 +348,31 @@ class PolarZ(Mechanism):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_c, axis_r, axis_z = axes
+        k = self._constants
+        offset_c = k.offset_c
+        offset_r = k.offset_r
+        # numbers of reasonable size
+        if not (abs(axis_c) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_z) <= 1e9):
+            return Status.BAD_INPUT
+        # R where the machine has no pose
+        if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
+            return Status.IMPOSSIBLE
+        r = axis_r - offset_r
+        c = DEGREE*(axis_c - offset_c)
+        sin_c = sin(c)
+        cos_c = cos(c)
+        return (
+            (-r*sin_c, cos_c, 0.0),
+            (r*cos_c, sin_c, 0.0),
+            (0.0, 0.0, 1.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (1.0, 0.0, 0.0),
+        )
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

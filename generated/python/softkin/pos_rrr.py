@@ -169,6 +169,7 @@ class PosRRR(OffsetKinematics):
     MARGINS = ("point_on_axis_1", "elbow")
     READS_ROTATION = False
     FREEDOM = "three"
+    ROLE = "position"
     BRANCHES = 2
     PERIOD_AXES = (0, 1, 2)
     DISTANCE_AXES = (0, 1, 2)
@@ -564,6 +565,54 @@ class PosRRR(OffsetKinematics):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self._constants
+        a1 = k.a1
+        a2 = k.a2
+        a3 = k.a3
+        d1 = k.d1
+        d3 = k.d3
+        d4 = k.d4
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        # numbers of reasonable size
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+            return Status.BAD_INPUT
+        q1 = DEGREE*(axis_a1 - offset_a1)
+        cos_q1 = cos(q1)
+        sin_q1 = sin(q1)
+        y_at_q2 = a1*sin_q1
+        q2 = DEGREE*(axis_a2 - offset_a2)
+        sin_q2 = sin(q2)
+        r21_at_q2 = -sin_q1*sin_q2
+        y_at_q3 = y_at_q2 + a2*r21_at_q2
+        q3 = DEGREE*(axis_a3 - offset_a3)
+        sin_q23 = sin(q2 + q3)
+        r21_at_q23 = -sin_q1*sin_q23
+        cos_q23 = cos(q2 + q3)
+        r22_at_q23 = -cos_q23*sin_q1
+        y = y_at_q3 + a3*r21_at_q23 - d3*cos_q1 - d4*r22_at_q23
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2*cos_q2
+        z = z_at_q3 + a3*cos_q23 + d4*sin_q23
+        x_at_q2 = a1*cos_q1
+        r11_at_q2 = -cos_q1*sin_q2
+        x_at_q3 = x_at_q2 + a2*r11_at_q2
+        r11_at_q23 = -cos_q1*sin_q23
+        r12_at_q23 = -cos_q1*cos_q23
+        x = x_at_q3 + a3*r11_at_q23 + d3*sin_q1 - d4*r12_at_q23
+        return (
+            (-y, -(z - d1)*cos_q1, -(z - z_at_q3)*cos_q1),
+            (x, -(z - d1)*sin_q1, -(z - z_at_q3)*sin_q1),
+            (0.0, (x - x_at_q2)*cos_q1 + (y - y_at_q2)*sin_q1, (x - x_at_q3)*cos_q1 + (y - y_at_q3)*sin_q1),
+            (0.0, sin_q1, sin_q1),
+            (0.0, -cos_q1, -cos_q1),
+            (1.0, 0.0, 0.0),
+        )
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,

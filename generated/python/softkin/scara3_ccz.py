@@ -142,6 +142,7 @@ class Scara3CCZ(OffsetKinematics):
     MARGINS = ("elbow",)
     READS_ROTATION = False
     FREEDOM = "one"
+    ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (0, 1)
     DISTANCE_AXES = (0, 1)
@@ -395,6 +396,32 @@ class Scara3CCZ(OffsetKinematics):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self._constants
+        link_length_1 = k.link_length_1
+        link_length_2 = k.link_length_2
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        # numbers of reasonable size
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+            return Status.BAD_INPUT
+        a1 = DEGREE*(axis_a1 - offset_a1)
+        sin_a1 = sin(a1)
+        a2 = DEGREE*(axis_a2 - offset_a2)
+        sin_a12 = sin(a1 + a2)
+        cos_a1 = cos(a1)
+        cos_a12 = cos(a1 + a2)
+        return (
+            (-link_length_1*sin_a1 - link_length_2*sin_a12, -link_length_2*sin_a12, 0.0),
+            (link_length_1*cos_a1 + link_length_2*cos_a12, link_length_2*cos_a12, 0.0),
+            (0.0, 0.0, 1.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (1.0, 1.0, 0.0),
+        )
 
     def _offset_branch(
         self, point: Vector, offset: Vector, signs: Reals, turns: Reals, reference: Reals,

@@ -172,6 +172,7 @@ class Scara3Z(TwistChoice):
     MARGINS = ("elbow",)
     READS_ROTATION = True
     FREEDOM = "one"
+    ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (0, 1, 2)
     DISTANCE_AXES = (0, 1, 2)
@@ -513,6 +514,43 @@ class Scara3Z(TwistChoice):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_z = axes
+        k = self._constants
+        arm_length_1 = k.arm_length_1
+        arm_length_2 = k.arm_length_2
+        arm_length_3 = k.arm_length_3
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        # numbers of reasonable size
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_z) <= 1e9):
+            return Status.BAD_INPUT
+        a1 = DEGREE*(axis_a1 - offset_a1)
+        sin_a1 = sin(a1)
+        a2 = DEGREE*(axis_a2 - offset_a2)
+        sin_a12 = sin(a1 + a2)
+        a3 = DEGREE*(axis_a3 - offset_a3)
+        sin_a123 = sin(a1 + a2 + a3)
+        cos_a1 = cos(a1)
+        cos_a12 = cos(a1 + a2)
+        cos_a123 = cos(a1 + a2 + a3)
+        return (
+            (
+                -arm_length_1*sin_a1 - arm_length_2*sin_a12 - arm_length_3*sin_a123,
+                -arm_length_2*sin_a12 - arm_length_3*sin_a123, -arm_length_3*sin_a123, 0.0,
+            ),
+            (
+                arm_length_1*cos_a1 + arm_length_2*cos_a12 + arm_length_3*cos_a123,
+                arm_length_2*cos_a12 + arm_length_3*cos_a123, arm_length_3*cos_a123, 0.0,
+            ),
+            (0.0, 0.0, 0.0, 1.0),
+            (0.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.0),
+            (1.0, 1.0, 1.0, 0.0),
+        )
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""

@@ -188,6 +188,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
     MARGINS = ("elbow",)
     READS_ROTATION = True
     FREEDOM = "one"
+    ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (3, 0, 1)
     DISTANCE_AXES = (0, 1, 3)
@@ -574,6 +575,34 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             ((1.0, 0.0, 0.0), (0.0, 1.0 - 2.0*flange_down, 0.0), (0.0, 0.0, 1.0 - 2.0*flange_down)),
             (0.0, 0.0, 1.0),
             (0.0, 0.0, 1.0 - 2.0*flange_down),
+        )
+
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        k = self._constants
+        gear_coupling = k.gear_coupling
+        link_length_1 = k.link_length_1
+        link_length_2 = k.link_length_2
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        pitch_zc = k.pitch_zc
+        # numbers of reasonable size
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+            return Status.BAD_INPUT
+        a1 = DEGREE*(axis_a1 - offset_a1)
+        sin_a1 = sin(a1)
+        a2 = DEGREE*(axis_a2 - offset_a2)
+        sin_a12 = sin(a1 + a2)
+        cos_a1 = cos(a1)
+        cos_a12 = cos(a1 + a2)
+        return (
+            (-link_length_1*sin_a1 - link_length_2*sin_a12, -link_length_2*sin_a12, 0.0, 0.0),
+            (link_length_1*cos_a1 + link_length_2*cos_a12, link_length_2*cos_a12, 0.0, 0.0),
+            (0.0, 0.0, 1.0, gear_coupling/DEGREE - pitch_zc/(360.0*DEGREE)),
+            (0.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.0),
+            (1.0, 1.0, 0.0, 1.0),
         )
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:

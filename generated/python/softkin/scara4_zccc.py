@@ -176,6 +176,7 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     MARGINS = ("elbow",)
     READS_ROTATION = True
     FREEDOM = "one"
+    ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (1, 2, 3)
     DISTANCE_AXES = (1, 2, 3)
@@ -517,6 +518,43 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_a3, axis_a4 = axes
+        k = self._constants
+        link_length_1 = k.link_length_1
+        link_length_2 = k.link_length_2
+        link_length_3 = k.link_length_3
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        offset_a4 = k.offset_a4
+        # numbers of reasonable size
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+            return Status.BAD_INPUT
+        a2 = DEGREE*(axis_a2 - offset_a2)
+        sin_a2 = sin(a2)
+        a3 = DEGREE*(axis_a3 - offset_a3)
+        sin_a23 = sin(a2 + a3)
+        a4 = DEGREE*(axis_a4 - offset_a4)
+        sin_a234 = sin(a2 + a3 + a4)
+        cos_a2 = cos(a2)
+        cos_a23 = cos(a2 + a3)
+        cos_a234 = cos(a2 + a3 + a4)
+        return (
+            (
+                0.0, -link_length_1*sin_a2 - link_length_2*sin_a23 - link_length_3*sin_a234,
+                -link_length_2*sin_a23 - link_length_3*sin_a234, -link_length_3*sin_a234,
+            ),
+            (
+                0.0, link_length_1*cos_a2 + link_length_2*cos_a23 + link_length_3*cos_a234,
+                link_length_2*cos_a23 + link_length_3*cos_a234, link_length_3*cos_a234,
+            ),
+            (1.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0, 0.0),
+            (0.0, 1.0, 1.0, 1.0),
+        )
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""

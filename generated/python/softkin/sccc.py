@@ -200,6 +200,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     MARGINS = ("elbow",)
     READS_ROTATION = True
     FREEDOM = "one"
+    ROLE = "position"
     BRANCHES = 1
     PERIOD_AXES = (0, 1, 2)
     DISTANCE_AXES = (0, 1, 2)
@@ -647,6 +648,58 @@ class SCCC(OffsetKinematics, TwistChoice):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _twist(self, axes: Reals) -> Matrix | Status:
+        """The twist of the frame by rows, per radian."""
+        axis_a1, axis_a2, axis_a3 = axes
+        k = self._constants
+        coupling_12 = k.coupling_12
+        coupling_13 = k.coupling_13
+        coupling_23 = k.coupling_23
+        link_length_1 = k.link_length_1
+        link_length_2 = k.link_length_2
+        link_length_3 = k.link_length_3
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        # numbers of reasonable size
+        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+            return Status.BAD_INPUT
+        a1 = DEGREE*(axis_a1 - offset_a1)
+        sin_a1 = sin(a1)
+        motor_a2 = DEGREE*(axis_a2 - offset_a2)
+        a2 = motor_a2 + a1*coupling_12
+        sin_a12 = sin(a1 + a2)
+        motor_a3 = DEGREE*(axis_a3 - offset_a3)
+        a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
+        sin_a123 = sin(a1 + a2 + a3)
+        cos_a1 = cos(a1)
+        cos_a12 = cos(a1 + a2)
+        cos_a123 = cos(a1 + a2 + a3)
+        return (
+            (
+                (
+                    -link_length_1*sin_a1 - link_length_2*sin_a12 - link_length_3*sin_a123
+                    - coupling_12*link_length_2*sin_a12 - coupling_12*link_length_3*sin_a123
+                    - coupling_13*link_length_3*sin_a123
+                ),
+                -link_length_2*sin_a12 - link_length_3*sin_a123 - coupling_23*link_length_3*sin_a123,
+                -link_length_3*sin_a123,
+            ),
+            (
+                (
+                    link_length_1*cos_a1 + link_length_2*cos_a12 + link_length_3*cos_a123
+                    + coupling_12*link_length_2*cos_a12 + coupling_12*link_length_3*cos_a123
+                    + coupling_13*link_length_3*cos_a123
+                ),
+                link_length_2*cos_a12 + link_length_3*cos_a123 + coupling_23*link_length_3*cos_a123,
+                link_length_3*cos_a123,
+            ),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (0.0, 0.0, 0.0),
+            (1.0 + coupling_12 + coupling_13, 1.0 + coupling_23, 1.0),
+        )
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
         """The nearest rotation that the flange can have."""

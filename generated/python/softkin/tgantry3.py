@@ -150,6 +150,7 @@ class TGantry3(OffsetKinematics):
     MARGINS = ()
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 0
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1, 2)

@@ -182,6 +182,7 @@ class TripodLinear(OffsetKinematics):
     MARGINS = ("square_1", "square_2", "square_3", "rods_coplanar")
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 3
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1, 2)

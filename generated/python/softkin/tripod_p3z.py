@@ -194,6 +194,7 @@ class TripodP3Z(OffsetKinematics):
     MARGINS = ("level_1", "level_2", "level_3", "rods_coplanar")
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 3
     PERIOD_AXES = ()
     DISTANCE_AXES = (0, 1, 2)

@@ -196,6 +196,7 @@ class TripodRotary(OffsetKinematics):
     MARGINS = ("stretched_1", "stretched_2", "stretched_3", "rods_coplanar")
     READS_ROTATION = False
     FREEDOM = "zero"
+    ROLE = "position"
     BRANCHES = 3
     PERIOD_AXES = (0, 1, 2)
     DISTANCE_AXES = (0, 1, 2)

@@ -36,272 +36,12 @@ class ArrayPrograms(StartedPrograms):
         """Programs for a machine."""
         self.constants = constants
 
-    def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
-        """Position, rotation and the signed margin of every branch."""
-        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
-        k = self.constants
-        assembly_sign = k.assembly_sign
-        base_1_x = k.base_1_x
-        base_1_y = k.base_1_y
-        base_1_z = k.base_1_z
-        base_2_x = k.base_2_x
-        base_2_y = k.base_2_y
-        base_2_z = k.base_2_z
-        base_3_x = k.base_3_x
-        base_3_y = k.base_3_y
-        base_3_z = k.base_3_z
-        base_4_x = k.base_4_x
-        base_4_y = k.base_4_y
-        base_4_z = k.base_4_z
-        base_5_x = k.base_5_x
-        base_5_y = k.base_5_y
-        base_5_z = k.base_5_z
-        base_6_x = k.base_6_x
-        base_6_y = k.base_6_y
-        base_6_z = k.base_6_z
-        home_arm_1_x = k.home_arm_1_x
-        home_arm_1_y = k.home_arm_1_y
-        home_arm_1_z = k.home_arm_1_z
-        home_arm_2_x = k.home_arm_2_x
-        home_arm_2_y = k.home_arm_2_y
-        home_arm_2_z = k.home_arm_2_z
-        home_arm_3_x = k.home_arm_3_x
-        home_arm_3_y = k.home_arm_3_y
-        home_arm_3_z = k.home_arm_3_z
-        home_arm_4_x = k.home_arm_4_x
-        home_arm_4_y = k.home_arm_4_y
-        home_arm_4_z = k.home_arm_4_z
-        home_arm_5_x = k.home_arm_5_x
-        home_arm_5_y = k.home_arm_5_y
-        home_arm_5_z = k.home_arm_5_z
-        home_arm_6_x = k.home_arm_6_x
-        home_arm_6_y = k.home_arm_6_y
-        home_arm_6_z = k.home_arm_6_z
-        home_r11 = k.home_r11
-        home_r12 = k.home_r12
-        home_r13 = k.home_r13
-        home_r21 = k.home_r21
-        home_r22 = k.home_r22
-        home_r23 = k.home_r23
-        home_r31 = k.home_r31
-        home_r32 = k.home_r32
-        home_r33 = k.home_r33
-        home_x = k.home_x
-        home_y = k.home_y
-        home_z = k.home_z
-        machine_scale = k.machine_scale
-        offset_l1 = k.offset_l1
-        offset_l2 = k.offset_l2
-        offset_l3 = k.offset_l3
-        offset_l4 = k.offset_l4
-        offset_l5 = k.offset_l5
-        offset_l6 = k.offset_l6
-        platform_radius = k.platform_radius
-        within = k.within
-        status = passed(axes)
-        # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(axis_l1) <= 1e9) & (absolute(axis_l2) <= 1e9) & (absolute(axis_l3) <= 1e9)
-                & (absolute(axis_l4) <= 1e9) & (absolute(axis_l5) <= 1e9) & (absolute(axis_l6) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        l1 = axis_l1 - offset_l1
-        l2 = axis_l2 - offset_l2
-        l3 = axis_l3 - offset_l3
-        l4 = axis_l4 - offset_l4
-        l5 = axis_l5 - offset_l5
-        l6 = axis_l6 - offset_l6
-        # the mirror that the machine does not have
-        require(
-            status,
-            (l1 > 0.0) & (l2 > 0.0) & (l3 > 0.0) & (l4 > 0.0) & (l5 > 0.0) & (l6 > 0.0),
-            Status.IMPOSSIBLE,
-        )
-        # Newton's method: every pass improves the pose until the rods fit
-        x, y, z, roll, pitch, yaw, fitted = initial(home_x, home_y, home_z, 0.0, 0.0, 0.0, 0.0)
-        for _ in range(20):
-            cos_pitch = cos(pitch)
-            cos_yaw = cos(yaw)
-            turned_11 = cos_pitch*cos_yaw
-            cos_roll = cos(roll)
-            sin_roll = sin(roll)
-            sin_pitch = sin(pitch)
-            sin_yaw = sin(yaw)
-            turned_12 = cos_yaw*sin_pitch*sin_roll - cos_roll*sin_yaw
-            turned_13 = sin_roll*sin_yaw + cos_roll*cos_yaw*sin_pitch
-            arm_1_x = home_arm_1_x*turned_11 + home_arm_1_y*turned_12 + home_arm_1_z*turned_13
-            span_1_x = arm_1_x + x - base_1_x
-            turned_21 = cos_pitch*sin_yaw
-            turned_22 = cos_roll*cos_yaw + sin_pitch*sin_roll*sin_yaw
-            turned_23 = cos_roll*sin_pitch*sin_yaw - cos_yaw*sin_roll
-            arm_1_y = home_arm_1_x*turned_21 + home_arm_1_y*turned_22 + home_arm_1_z*turned_23
-            span_1_y = arm_1_y + y - base_1_y
-            turned_31 = -sin_pitch
-            turned_32 = cos_pitch*sin_roll
-            turned_33 = cos_pitch*cos_roll
-            arm_1_z = home_arm_1_x*turned_31 + home_arm_1_y*turned_32 + home_arm_1_z*turned_33
-            span_1_z = arm_1_z + z - base_1_z
-            length_1 = root(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
-            error_1 = length_1 - l1  # by what rod 1 would be too long
-            arm_2_x = home_arm_2_x*turned_11 + home_arm_2_y*turned_12 + home_arm_2_z*turned_13
-            span_2_x = arm_2_x + x - base_2_x
-            arm_2_y = home_arm_2_x*turned_21 + home_arm_2_y*turned_22 + home_arm_2_z*turned_23
-            span_2_y = arm_2_y + y - base_2_y
-            arm_2_z = home_arm_2_x*turned_31 + home_arm_2_y*turned_32 + home_arm_2_z*turned_33
-            span_2_z = arm_2_z + z - base_2_z
-            length_2 = root(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
-            error_2 = length_2 - l2  # by what rod 2 would be too long
-            arm_3_x = home_arm_3_x*turned_11 + home_arm_3_y*turned_12 + home_arm_3_z*turned_13
-            span_3_x = arm_3_x + x - base_3_x
-            arm_3_y = home_arm_3_x*turned_21 + home_arm_3_y*turned_22 + home_arm_3_z*turned_23
-            span_3_y = arm_3_y + y - base_3_y
-            arm_3_z = home_arm_3_x*turned_31 + home_arm_3_y*turned_32 + home_arm_3_z*turned_33
-            span_3_z = arm_3_z + z - base_3_z
-            length_3 = root(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
-            error_3 = length_3 - l3  # by what rod 3 would be too long
-            arm_4_x = home_arm_4_x*turned_11 + home_arm_4_y*turned_12 + home_arm_4_z*turned_13
-            span_4_x = arm_4_x + x - base_4_x
-            arm_4_y = home_arm_4_x*turned_21 + home_arm_4_y*turned_22 + home_arm_4_z*turned_23
-            span_4_y = arm_4_y + y - base_4_y
-            arm_4_z = home_arm_4_x*turned_31 + home_arm_4_y*turned_32 + home_arm_4_z*turned_33
-            span_4_z = arm_4_z + z - base_4_z
-            length_4 = root(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
-            error_4 = length_4 - l4  # by what rod 4 would be too long
-            arm_5_x = home_arm_5_x*turned_11 + home_arm_5_y*turned_12 + home_arm_5_z*turned_13
-            span_5_x = arm_5_x + x - base_5_x
-            arm_5_y = home_arm_5_x*turned_21 + home_arm_5_y*turned_22 + home_arm_5_z*turned_23
-            span_5_y = arm_5_y + y - base_5_y
-            arm_5_z = home_arm_5_x*turned_31 + home_arm_5_y*turned_32 + home_arm_5_z*turned_33
-            span_5_z = arm_5_z + z - base_5_z
-            length_5 = root(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
-            error_5 = length_5 - l5  # by what rod 5 would be too long
-            arm_6_x = home_arm_6_x*turned_11 + home_arm_6_y*turned_12 + home_arm_6_z*turned_13
-            span_6_x = arm_6_x + x - base_6_x
-            arm_6_y = home_arm_6_x*turned_21 + home_arm_6_y*turned_22 + home_arm_6_z*turned_23
-            span_6_y = arm_6_y + y - base_6_y
-            arm_6_z = home_arm_6_x*turned_31 + home_arm_6_y*turned_32 + home_arm_6_z*turned_33
-            span_6_z = arm_6_z + z - base_6_z
-            length_6 = root(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
-            error_6 = length_6 - l6  # by what rod 6 would be too long
-            # whether the rods fit
-            fit = select(
-                (
-                    (absolute(error_1) <= within) & (absolute(error_2) <= within) & (absolute(error_3) <= within)
-                    & (absolute(error_4) <= within) & (absolute(error_5) <= within) & (absolute(error_6) <= within)
-                ),
-                1.0,
-                0.0,
-            )
-            divisor_1 = select(length_1 > 1e-9*machine_scale, length_1, 1.0)
-            along_1_x = span_1_x/divisor_1
-            along_1_y = span_1_y/divisor_1
-            along_1_z = span_1_z/divisor_1
-            moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-            moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-            moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-            divisor_2 = select(length_2 > 1e-9*machine_scale, length_2, 1.0)
-            along_2_x = span_2_x/divisor_2
-            along_2_y = span_2_y/divisor_2
-            along_2_z = span_2_z/divisor_2
-            moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-            moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-            moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-            divisor_3 = select(length_3 > 1e-9*machine_scale, length_3, 1.0)
-            along_3_x = span_3_x/divisor_3
-            along_3_y = span_3_y/divisor_3
-            along_3_z = span_3_z/divisor_3
-            moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-            moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-            moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-            divisor_4 = select(length_4 > 1e-9*machine_scale, length_4, 1.0)
-            along_4_x = span_4_x/divisor_4
-            along_4_y = span_4_y/divisor_4
-            along_4_z = span_4_z/divisor_4
-            moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-            moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-            moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-            divisor_5 = select(length_5 > 1e-9*machine_scale, length_5, 1.0)
-            along_5_x = span_5_x/divisor_5
-            along_5_y = span_5_y/divisor_5
-            along_5_z = span_5_z/divisor_5
-            moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-            moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-            moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-            divisor_6 = select(length_6 > 1e-9*machine_scale, length_6, 1.0)
-            along_6_x = span_6_x/divisor_6
-            along_6_y = span_6_y/divisor_6
-            along_6_z = span_6_z/divisor_6
-            moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-            moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-            moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
-            # the twist that lets the errors vanish
-            determinant, x_rate, y_rate, z_rate, swing_x, swing_y, swing_z = solve(
-                (
-                    (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                    (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                    (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                    (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                    (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                    (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
-                ),
-                ((-error_1,), (-error_2,), (-error_3,), (-error_4,), (-error_5,), (-error_6,)),
-            )
-            spin_x = swing_x/platform_radius
-            spin_y = swing_y/platform_radius
-            cos_pitch_divisor = select(absolute(cos_pitch) > 1e-11, cos_pitch, 1.0)
-            roll_rate = (spin_x*cos_yaw + spin_y*sin_yaw)/cos_pitch_divisor
-            pitch_rate = spin_y*cos_yaw - spin_x*sin_yaw
-            spin_z = swing_z/platform_radius
-            yaw_rate = spin_z + roll_rate*sin_pitch
-            # of the step, in machines and radians
-            size = root(
-                pitch_rate*pitch_rate + roll_rate*roll_rate + yaw_rate*yaw_rate
-                + x_rate*x_rate/(machine_scale*machine_scale) + y_rate*y_rate/(machine_scale*machine_scale)
-                + z_rate*z_rate/(machine_scale*machine_scale)
-            )
-            stretch = select(size > 0.5, 2.0*size, 1.0)
-            done = (fit > 0.5) & (fitted > 0.5)
-            if settled(done, status):
-                break
-            x, y, z, roll, pitch, yaw, fitted = advanced(
-                done,
-                (x, y, z, roll, pitch, yaw, fitted),
-                (
-                    x + x_rate/stretch,
-                    y + y_rate/stretch,
-                    z + z_rate/stretch,
-                    roll + roll_rate/stretch,
-                    pitch + pitch_rate/stretch,
-                    yaw + yaw_rate/stretch,
-                    fit,
-                ),
-            )
-        require(status, done, Status.IMPOSSIBLE)
-        # the other assembly mode
-        require(status, assembly_sign*determinant > 0.0, Status.IMPOSSIBLE)
-        r11 = home_r11*turned_11 + home_r21*turned_12 + home_r31*turned_13
-        r12 = home_r12*turned_11 + home_r22*turned_12 + home_r32*turned_13
-        r13 = home_r13*turned_11 + home_r23*turned_12 + home_r33*turned_13
-        r21 = home_r11*turned_21 + home_r21*turned_22 + home_r31*turned_23
-        r22 = home_r12*turned_21 + home_r22*turned_22 + home_r32*turned_23
-        r23 = home_r13*turned_21 + home_r23*turned_22 + home_r33*turned_23
-        r31 = home_r11*turned_31 + home_r21*turned_32 + home_r31*turned_33
-        r32 = home_r12*turned_31 + home_r22*turned_32 + home_r32*turned_33
-        r33 = home_r13*turned_31 + home_r23*turned_32 + home_r33*turned_33
-        return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ()), status
-
-    def forward_from(
-        self, axes: Reals, start_position: Vector, start_rotation: Rotation,
-    ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
-        """The same, found from a given start."""
-        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
-        start_x, start_y, start_z = start_position
+    def find_platform(self, given: Reals, status: Codes) -> Reals:
+        """The pose of the platform at its axis values, the rows of A there, and their determinant."""
         (
-            start_r11, start_r12, start_r13,
-        ), (start_r21, start_r22, start_r23), (start_r31, start_r32, start_r33) = start_rotation
+            axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,
+            start_r22, start_r23, start_r31, start_r32, start_r33, start_x, start_y, start_z,
+        ) = given
         k = self.constants
         assembly_sign = k.assembly_sign
         base_1_x = k.base_1_x
@@ -349,7 +89,6 @@ class ArrayPrograms(StartedPrograms):
         platform_6_z = k.platform_6_z
         platform_radius = k.platform_radius
         within = k.within
-        status = passed(axes)
         # numbers of reasonable size
         require(
             status,
@@ -371,40 +110,7 @@ class ArrayPrograms(StartedPrograms):
             (l1 > 0.0) & (l2 > 0.0) & (l3 > 0.0) & (l4 > 0.0) & (l5 > 0.0) & (l6 > 0.0),
             Status.IMPOSSIBLE,
         )
-        # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(start_r11) <= 1e9) & (absolute(start_r12) <= 1e9) & (absolute(start_r13) <= 1e9)
-                & (absolute(start_r21) <= 1e9) & (absolute(start_r22) <= 1e9) & (absolute(start_r23) <= 1e9)
-                & (absolute(start_r31) <= 1e9) & (absolute(start_r32) <= 1e9) & (absolute(start_r33) <= 1e9)
-                & (absolute(start_x) <= 1e9) & (absolute(start_y) <= 1e9) & (absolute(start_z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(start_r11*start_r12 + start_r21*start_r22 + start_r31*start_r32) <= 1e-6)
-                & (absolute(start_r11*start_r13 + start_r21*start_r23 + start_r31*start_r33) <= 1e-6)
-                & (absolute(start_r12*start_r13 + start_r22*start_r23 + start_r32*start_r33) <= 1e-6)
-                & (absolute(start_r11*start_r11 + start_r21*start_r21 + start_r31*start_r31 - 1.0) <= 1e-6)
-                & (absolute(start_r12*start_r12 + start_r22*start_r22 + start_r32*start_r32 - 1.0) <= 1e-6)
-                & (absolute(start_r13*start_r13 + start_r23*start_r23 + start_r33*start_r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status,
-            (
-                start_r11*(start_r22*start_r33 - start_r23*start_r32)
-                + (start_r13*start_r32 - start_r12*start_r33)*start_r21
-                + (start_r12*start_r23 - start_r13*start_r22)*start_r31 > 0.0
-            ),
-            Status.BAD_INPUT,
-        )
+        # the joints of the platform, from its origin, as it is turned at the start
         start_arm_1_x = platform_1_x*start_r11 + platform_1_y*start_r12 + platform_1_z*start_r13
         start_arm_1_y = platform_1_x*start_r21 + platform_1_y*start_r22 + platform_1_z*start_r23
         start_arm_1_z = platform_1_x*start_r31 + platform_1_y*start_r32 + platform_1_z*start_r33
@@ -428,7 +134,7 @@ class ArrayPrograms(StartedPrograms):
         for _ in range(20):
             cos_pitch = cos(pitch)
             cos_yaw = cos(yaw)
-            turned_11 = cos_pitch*cos_yaw
+            turned_11 = cos_pitch*cos_yaw  # the turn away from the start: Rz(yaw) Ry(pitch) Rx(roll)
             cos_roll = cos(roll)
             sin_roll = sin(roll)
             sin_pitch = sin(pitch)
@@ -436,7 +142,7 @@ class ArrayPrograms(StartedPrograms):
             turned_12 = cos_yaw*sin_pitch*sin_roll - cos_roll*sin_yaw
             turned_13 = sin_roll*sin_yaw + cos_roll*cos_yaw*sin_pitch
             arm_1_x = start_arm_1_x*turned_11 + start_arm_1_y*turned_12 + start_arm_1_z*turned_13
-            span_1_x = arm_1_x + x - base_1_x
+            span_1_x = arm_1_x + x - base_1_x  # leg 1: from its joint on the base to its joint on the platform
             turned_21 = cos_pitch*sin_yaw
             turned_22 = cos_roll*cos_yaw + sin_pitch*sin_roll*sin_yaw
             turned_23 = cos_roll*sin_pitch*sin_yaw - cos_yaw*sin_roll
@@ -448,47 +154,47 @@ class ArrayPrograms(StartedPrograms):
             arm_1_z = start_arm_1_x*turned_31 + start_arm_1_y*turned_32 + start_arm_1_z*turned_33
             span_1_z = arm_1_z + z - base_1_z
             length_1 = root(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
-            error_1 = length_1 - l1  # by what rod 1 would be too long
+            error_1 = length_1 - l1  # by what leg 1 would be too long
             arm_2_x = start_arm_2_x*turned_11 + start_arm_2_y*turned_12 + start_arm_2_z*turned_13
-            span_2_x = arm_2_x + x - base_2_x
+            span_2_x = arm_2_x + x - base_2_x  # leg 2: from its joint on the base to its joint on the platform
             arm_2_y = start_arm_2_x*turned_21 + start_arm_2_y*turned_22 + start_arm_2_z*turned_23
             span_2_y = arm_2_y + y - base_2_y
             arm_2_z = start_arm_2_x*turned_31 + start_arm_2_y*turned_32 + start_arm_2_z*turned_33
             span_2_z = arm_2_z + z - base_2_z
             length_2 = root(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
-            error_2 = length_2 - l2  # by what rod 2 would be too long
+            error_2 = length_2 - l2  # by what leg 2 would be too long
             arm_3_x = start_arm_3_x*turned_11 + start_arm_3_y*turned_12 + start_arm_3_z*turned_13
-            span_3_x = arm_3_x + x - base_3_x
+            span_3_x = arm_3_x + x - base_3_x  # leg 3: from its joint on the base to its joint on the platform
             arm_3_y = start_arm_3_x*turned_21 + start_arm_3_y*turned_22 + start_arm_3_z*turned_23
             span_3_y = arm_3_y + y - base_3_y
             arm_3_z = start_arm_3_x*turned_31 + start_arm_3_y*turned_32 + start_arm_3_z*turned_33
             span_3_z = arm_3_z + z - base_3_z
             length_3 = root(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
-            error_3 = length_3 - l3  # by what rod 3 would be too long
+            error_3 = length_3 - l3  # by what leg 3 would be too long
             arm_4_x = start_arm_4_x*turned_11 + start_arm_4_y*turned_12 + start_arm_4_z*turned_13
-            span_4_x = arm_4_x + x - base_4_x
+            span_4_x = arm_4_x + x - base_4_x  # leg 4: from its joint on the base to its joint on the platform
             arm_4_y = start_arm_4_x*turned_21 + start_arm_4_y*turned_22 + start_arm_4_z*turned_23
             span_4_y = arm_4_y + y - base_4_y
             arm_4_z = start_arm_4_x*turned_31 + start_arm_4_y*turned_32 + start_arm_4_z*turned_33
             span_4_z = arm_4_z + z - base_4_z
             length_4 = root(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
-            error_4 = length_4 - l4  # by what rod 4 would be too long
+            error_4 = length_4 - l4  # by what leg 4 would be too long
             arm_5_x = start_arm_5_x*turned_11 + start_arm_5_y*turned_12 + start_arm_5_z*turned_13
-            span_5_x = arm_5_x + x - base_5_x
+            span_5_x = arm_5_x + x - base_5_x  # leg 5: from its joint on the base to its joint on the platform
             arm_5_y = start_arm_5_x*turned_21 + start_arm_5_y*turned_22 + start_arm_5_z*turned_23
             span_5_y = arm_5_y + y - base_5_y
             arm_5_z = start_arm_5_x*turned_31 + start_arm_5_y*turned_32 + start_arm_5_z*turned_33
             span_5_z = arm_5_z + z - base_5_z
             length_5 = root(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
-            error_5 = length_5 - l5  # by what rod 5 would be too long
+            error_5 = length_5 - l5  # by what leg 5 would be too long
             arm_6_x = start_arm_6_x*turned_11 + start_arm_6_y*turned_12 + start_arm_6_z*turned_13
-            span_6_x = arm_6_x + x - base_6_x
+            span_6_x = arm_6_x + x - base_6_x  # leg 6: from its joint on the base to its joint on the platform
             arm_6_y = start_arm_6_x*turned_21 + start_arm_6_y*turned_22 + start_arm_6_z*turned_23
             span_6_y = arm_6_y + y - base_6_y
             arm_6_z = start_arm_6_x*turned_31 + start_arm_6_y*turned_32 + start_arm_6_z*turned_33
             span_6_z = arm_6_z + z - base_6_z
             length_6 = root(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
-            error_6 = length_6 - l6  # by what rod 6 would be too long
+            error_6 = length_6 - l6  # by what leg 6 would be too long
             # whether the rods fit
             fit = select(
                 (
@@ -498,6 +204,7 @@ class ArrayPrograms(StartedPrograms):
                 1.0,
                 0.0,
             )
+            # leg 1: its direction, and the moment of that about the platform's origin
             divisor_1 = select(length_1 > 1e-9*machine_scale, length_1, 1.0)
             along_1_x = span_1_x/divisor_1
             along_1_y = span_1_y/divisor_1
@@ -505,6 +212,7 @@ class ArrayPrograms(StartedPrograms):
             moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
             moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
             moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
+            # leg 2: its direction, and the moment of that about the platform's origin
             divisor_2 = select(length_2 > 1e-9*machine_scale, length_2, 1.0)
             along_2_x = span_2_x/divisor_2
             along_2_y = span_2_y/divisor_2
@@ -512,6 +220,7 @@ class ArrayPrograms(StartedPrograms):
             moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
             moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
             moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
+            # leg 3: its direction, and the moment of that about the platform's origin
             divisor_3 = select(length_3 > 1e-9*machine_scale, length_3, 1.0)
             along_3_x = span_3_x/divisor_3
             along_3_y = span_3_y/divisor_3
@@ -519,6 +228,7 @@ class ArrayPrograms(StartedPrograms):
             moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
             moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
             moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
+            # leg 4: its direction, and the moment of that about the platform's origin
             divisor_4 = select(length_4 > 1e-9*machine_scale, length_4, 1.0)
             along_4_x = span_4_x/divisor_4
             along_4_y = span_4_y/divisor_4
@@ -526,6 +236,7 @@ class ArrayPrograms(StartedPrograms):
             moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
             moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
             moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
+            # leg 5: its direction, and the moment of that about the platform's origin
             divisor_5 = select(length_5 > 1e-9*machine_scale, length_5, 1.0)
             along_5_x = span_5_x/divisor_5
             along_5_y = span_5_y/divisor_5
@@ -533,6 +244,7 @@ class ArrayPrograms(StartedPrograms):
             moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
             moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
             moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
+            # leg 6: its direction, and the moment of that about the platform's origin
             divisor_6 = select(length_6 > 1e-9*machine_scale, length_6, 1.0)
             along_6_x = span_6_x/divisor_6
             along_6_y = span_6_y/divisor_6
@@ -585,7 +297,7 @@ class ArrayPrograms(StartedPrograms):
         require(status, done, Status.IMPOSSIBLE)
         # the other assembly mode
         require(status, assembly_sign*determinant > 0.0, Status.IMPOSSIBLE)
-        r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13
+        r11 = start_r11*turned_11 + start_r21*turned_12 + start_r31*turned_13  # the start, and the turn away from it
         r12 = start_r12*turned_11 + start_r22*turned_12 + start_r32*turned_13
         r13 = start_r13*turned_11 + start_r23*turned_12 + start_r33*turned_13
         r21 = start_r11*turned_21 + start_r21*turned_22 + start_r31*turned_23
@@ -594,6 +306,97 @@ class ArrayPrograms(StartedPrograms):
         r31 = start_r11*turned_31 + start_r21*turned_32 + start_r31*turned_33
         r32 = start_r12*turned_31 + start_r22*turned_32 + start_r32*turned_33
         r33 = start_r13*turned_31 + start_r23*turned_32 + start_r33*turned_33
+        return (
+            x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, determinant, along_1_x, along_1_y, along_1_z,
+            moment_1_x, moment_1_y, moment_1_z, along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z,
+            along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z, along_4_x, along_4_y, along_4_z,
+            moment_4_x, moment_4_y, moment_4_z, along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z,
+            along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z,
+        )
+
+    def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
+        """Position, rotation and the signed margin of every branch."""
+        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
+        k = self.constants
+        home_r11 = k.home_r11
+        home_r12 = k.home_r12
+        home_r13 = k.home_r13
+        home_r21 = k.home_r21
+        home_r22 = k.home_r22
+        home_r23 = k.home_r23
+        home_r31 = k.home_r31
+        home_r32 = k.home_r32
+        home_r33 = k.home_r33
+        home_x = k.home_x
+        home_y = k.home_y
+        home_z = k.home_z
+        status = passed(axes)
+        # the platform on its rods, searched from the home pose
+        found = self.find_platform(
+            (
+                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, home_r11, home_r12, home_r13, home_r21,
+                home_r22, home_r23, home_r31, home_r32, home_r33, home_x, home_y, home_z,
+            ),
+            status,
+        )
+        x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, *_ = found
+        return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ()), status
+
+    def forward_from(
+        self, axes: Reals, start_position: Vector, start_rotation: Rotation,
+    ) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
+        """The same, found from a given start."""
+        axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6 = axes
+        start_x, start_y, start_z = start_position
+        (
+            (start_r11, start_r12, start_r13),
+            (start_r21, start_r22, start_r23),
+            (start_r31, start_r32, start_r33),
+        ) = start_rotation
+        status = passed(axes)
+        # numbers of reasonable size
+        require(
+            status,
+            (
+                (absolute(start_r11) <= 1e9) & (absolute(start_r12) <= 1e9) & (absolute(start_r13) <= 1e9)
+                & (absolute(start_r21) <= 1e9) & (absolute(start_r22) <= 1e9) & (absolute(start_r23) <= 1e9)
+                & (absolute(start_r31) <= 1e9) & (absolute(start_r32) <= 1e9) & (absolute(start_r33) <= 1e9)
+                & (absolute(start_x) <= 1e9) & (absolute(start_y) <= 1e9) & (absolute(start_z) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
+        # columns of length one, at right angles
+        require(
+            status,
+            (
+                (absolute(start_r11*start_r12 + start_r21*start_r22 + start_r31*start_r32) <= 1e-6)
+                & (absolute(start_r11*start_r13 + start_r21*start_r23 + start_r31*start_r33) <= 1e-6)
+                & (absolute(start_r12*start_r13 + start_r22*start_r23 + start_r32*start_r33) <= 1e-6)
+                & (absolute(start_r11*start_r11 + start_r21*start_r21 + start_r31*start_r31 - 1.0) <= 1e-6)
+                & (absolute(start_r12*start_r12 + start_r22*start_r22 + start_r32*start_r32 - 1.0) <= 1e-6)
+                & (absolute(start_r13*start_r13 + start_r23*start_r23 + start_r33*start_r33 - 1.0) <= 1e-6)
+            ),
+            Status.BAD_INPUT,
+        )
+        # a right-handed frame
+        require(
+            status,
+            (
+                start_r11*(start_r22*start_r33 - start_r23*start_r32)
+                + (start_r13*start_r32 - start_r12*start_r33)*start_r21
+                + (start_r12*start_r23 - start_r13*start_r22)*start_r31 > 0.0
+            ),
+            Status.BAD_INPUT,
+        )
+        # the platform on its rods, searched from the given start
+        found = self.find_platform(
+            (
+                axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6, start_r11, start_r12, start_r13, start_r21,
+                start_r22, start_r23, start_r31, start_r32, start_r33, start_x, start_y, start_z,
+            ),
+            status,
+        )
+        x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33, *_ = found
         return ((x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)), ()), status
 
     def branch(
@@ -622,6 +425,26 @@ class ArrayPrograms(StartedPrograms):
         base_6_x = k.base_6_x
         base_6_y = k.base_6_y
         base_6_z = k.base_6_z
+        home_along_1_x = k.home_along_1_x
+        home_along_1_y = k.home_along_1_y
+        home_along_1_z = k.home_along_1_z
+        home_along_2_x = k.home_along_2_x
+        home_along_2_y = k.home_along_2_y
+        home_along_2_z = k.home_along_2_z
+        home_along_3_x = k.home_along_3_x
+        home_along_3_y = k.home_along_3_y
+        home_along_3_z = k.home_along_3_z
+        home_along_4_x = k.home_along_4_x
+        home_along_4_y = k.home_along_4_y
+        home_along_4_z = k.home_along_4_z
+        home_along_5_x = k.home_along_5_x
+        home_along_5_y = k.home_along_5_y
+        home_along_5_z = k.home_along_5_z
+        home_along_6_x = k.home_along_6_x
+        home_along_6_y = k.home_along_6_y
+        home_along_6_z = k.home_along_6_z
+        least_cos_base = k.least_cos_base
+        least_cos_plate = k.least_cos_plate
         machine_scale = k.machine_scale
         min_type2_margin = k.min_type2_margin
         offset_l1 = k.offset_l1
@@ -630,6 +453,24 @@ class ArrayPrograms(StartedPrograms):
         offset_l4 = k.offset_l4
         offset_l5 = k.offset_l5
         offset_l6 = k.offset_l6
+        plate_axis_1_x = k.plate_axis_1_x
+        plate_axis_1_y = k.plate_axis_1_y
+        plate_axis_1_z = k.plate_axis_1_z
+        plate_axis_2_x = k.plate_axis_2_x
+        plate_axis_2_y = k.plate_axis_2_y
+        plate_axis_2_z = k.plate_axis_2_z
+        plate_axis_3_x = k.plate_axis_3_x
+        plate_axis_3_y = k.plate_axis_3_y
+        plate_axis_3_z = k.plate_axis_3_z
+        plate_axis_4_x = k.plate_axis_4_x
+        plate_axis_4_y = k.plate_axis_4_y
+        plate_axis_4_z = k.plate_axis_4_z
+        plate_axis_5_x = k.plate_axis_5_x
+        plate_axis_5_y = k.plate_axis_5_y
+        plate_axis_5_z = k.plate_axis_5_z
+        plate_axis_6_x = k.plate_axis_6_x
+        plate_axis_6_y = k.plate_axis_6_y
+        plate_axis_6_z = k.plate_axis_6_z
         platform_1_x = k.platform_1_x
         platform_1_y = k.platform_1_y
         platform_1_z = k.platform_1_z
@@ -723,60 +564,116 @@ class ArrayPrograms(StartedPrograms):
             ),
             Status.UNREACHABLE,
         )
+        # leg 1: its direction, and the moment of that about the platform's origin
         divisor_1 = select(l1 > 1e-9*machine_scale, l1, 1.0)
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
+        cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
+        # leg 2: its direction, and the moment of that about the platform's origin
+        divisor_2 = select(l2 > 1e-9*machine_scale, l2, 1.0)
+        along_2_x = span_2_x/divisor_2
+        along_2_y = span_2_y/divisor_2
+        along_2_z = span_2_z/divisor_2
+        cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
+        # leg 3: its direction, and the moment of that about the platform's origin
+        divisor_3 = select(l3 > 1e-9*machine_scale, l3, 1.0)
+        along_3_x = span_3_x/divisor_3
+        along_3_y = span_3_y/divisor_3
+        along_3_z = span_3_z/divisor_3
+        cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
+        # leg 4: its direction, and the moment of that about the platform's origin
+        divisor_4 = select(l4 > 1e-9*machine_scale, l4, 1.0)
+        along_4_x = span_4_x/divisor_4
+        along_4_y = span_4_y/divisor_4
+        along_4_z = span_4_z/divisor_4
+        cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
+        # leg 5: its direction, and the moment of that about the platform's origin
+        divisor_5 = select(l5 > 1e-9*machine_scale, l5, 1.0)
+        along_5_x = span_5_x/divisor_5
+        along_5_y = span_5_y/divisor_5
+        along_5_z = span_5_z/divisor_5
+        cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
+        # leg 6: its direction, and the moment of that about the platform's origin
+        divisor_6 = select(l6 > 1e-9*machine_scale, l6, 1.0)
+        along_6_x = span_6_x/divisor_6
+        along_6_y = span_6_y/divisor_6
+        along_6_z = span_6_z/divisor_6
+        cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
+        # a joint on the base bends beyond its cone
+        require(
+            status,
+            (
+                (cos_base_lean_1 >= least_cos_base) & (cos_base_lean_2 >= least_cos_base)
+                & (cos_base_lean_3 >= least_cos_base) & (cos_base_lean_4 >= least_cos_base)
+                & (cos_base_lean_5 >= least_cos_base) & (cos_base_lean_6 >= least_cos_base)
+            ),
+            Status.UNREACHABLE,
+        )
+        cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
+        cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
+        cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
+        cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
+        cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
+        cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
+        cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
+        cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
+        cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
+        cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
+        cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
+        cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
+        cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
+        cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
+        cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
+        cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
+        cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
+        cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
+        cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
+        cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
+        cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
+        cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
+        cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
+        cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
+        # a joint on the plate bends beyond its cone
+        require(
+            status,
+            (
+                (cos_plate_lean_1 >= least_cos_plate) & (cos_plate_lean_2 >= least_cos_plate)
+                & (cos_plate_lean_3 >= least_cos_plate) & (cos_plate_lean_4 >= least_cos_plate)
+                & (cos_plate_lean_5 >= least_cos_plate) & (cos_plate_lean_6 >= least_cos_plate)
+            ),
+            Status.UNREACHABLE,
+        )
         arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
         arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
         moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
         arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
         moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
         moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-        divisor_2 = select(l2 > 1e-9*machine_scale, l2, 1.0)
-        along_2_x = span_2_x/divisor_2
-        along_2_y = span_2_y/divisor_2
-        along_2_z = span_2_z/divisor_2
         arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
         arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
         moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
         arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
         moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
         moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-        divisor_3 = select(l3 > 1e-9*machine_scale, l3, 1.0)
-        along_3_x = span_3_x/divisor_3
-        along_3_y = span_3_y/divisor_3
-        along_3_z = span_3_z/divisor_3
         arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
         arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
         moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
         arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
         moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
         moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-        divisor_4 = select(l4 > 1e-9*machine_scale, l4, 1.0)
-        along_4_x = span_4_x/divisor_4
-        along_4_y = span_4_y/divisor_4
-        along_4_z = span_4_z/divisor_4
         arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
         arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
         moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
         arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
         moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
         moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-        divisor_5 = select(l5 > 1e-9*machine_scale, l5, 1.0)
-        along_5_x = span_5_x/divisor_5
-        along_5_y = span_5_y/divisor_5
-        along_5_z = span_5_z/divisor_5
         arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
         arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
         moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
         arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
         moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
         moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-        divisor_6 = select(l6 > 1e-9*machine_scale, l6, 1.0)
-        along_6_x = span_6_x/divisor_6
-        along_6_y = span_6_y/divisor_6
-        along_6_z = span_6_z/divisor_6
         arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
         arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
         moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius

@@ -1,0 +1,122 @@
+"""The objects of a text as CODESYS holds them: a declaration and an implementation each, members below a block.
+
+One text is the source of all: the `.st` files show these objects with a ruler above every part, PLCopenXML and the
+import script carry the same parts.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+_OPENING = re.compile(r"(FUNCTION_BLOCK|FUNCTION|PROGRAM|TYPE|METHOD|PROPERTY|GET)\b(?: PUBLIC| PRIVATE)? *(\w*)")
+_HOLDERS = ("FUNCTION_BLOCK", "PROGRAM", "PROPERTY")
+_RULER_WIDTH = 110
+
+
+@dataclass(frozen=True)
+class Object:
+    """An object, or a member of one: a method, a property, the getter of a property (named Get)."""
+
+    kind: str
+    name: str
+    declaration: str
+    implementation: str
+    members: tuple[Object, ...] = ()
+
+    def parts(self) -> Iterator[Object]:
+        """The object, then its members, each before its own."""
+        yield self
+        for member in self.members:
+            yield from member.parts()
+
+
+def objects_of(text: str) -> tuple[Object, ...]:
+    """The objects of a text in their order; raises `ValueError` for one without an end, and for text that is in none."""
+    return tuple(_Reader(text).objects())
+
+
+def ruled(objects: Sequence[Object]) -> str:
+    """The objects as text, with a ruler above every part that an editor of CODESYS holds."""
+    return "\n\n".join("\n".join(_lines(one, one.name)) for one in objects) + "\n"
+
+
+class _Reader:
+    def __init__(self, text: str) -> None:
+        self._lines = iter(text.split("\n"))
+
+    def objects(self) -> Iterator[Object]:
+        own: list[str] = []
+        is_comment = False
+        for line in self._lines:
+            own.append(line)
+            if not is_comment and _OPENING.match(line):
+                yield self._object(own)
+                own = []
+            elif not is_comment and line and not line.startswith(("//", "(*", "{")):
+                raise ValueError(f"{line!r} stands in no object")
+            is_comment = "*)" not in line and (is_comment or line.startswith("(*"))
+
+    def _object(self, own: list[str]) -> Object:
+        """The object that the last of these lines opens; those above it are its comment and its pragmas."""
+        opening = own[-1]
+        kind, name = _opened(opening)
+        members: list[Object] = []
+        for line in self._lines:
+            if line == f"END_{kind}":
+                return _made(kind, name, own if kind != "TYPE" else [*own, line], members)
+            own.append(line)
+            if kind in _HOLDERS and _OPENING.match(line):
+                lead = _lead(own)
+                del own[len(own) - len(lead) :]
+                members.append(self._object(lead))
+        raise ValueError(f"{opening!r} has no END_{kind}")
+
+
+def _opened(line: str) -> tuple[str, str]:
+    found = _OPENING.match(line)
+    assert found is not None
+    return found.group(1), found.group(2) or "Get"
+
+
+def _lead(lines: Sequence[str]) -> list[str]:
+    """The last line, which opens a member, with the comments and pragmas right above it."""
+    start = len(lines) - 1
+    while start > 0 and lines[start - 1].startswith(("//", "{")):
+        start -= 1
+    return list(lines[start:])
+
+
+def _made(kind: str, name: str, lines: Sequence[str], members: Sequence[Object]) -> Object:
+    """The object of these lines: the declaration ends with its last section of variables, or with its head."""
+    last = max(at for at, line in enumerate(lines) if line in ("END_VAR", "END_TYPE") or _OPENING.match(line))
+    start = 1 if kind == "GET" else 0
+    declaration = "\n".join(lines[start : last + 1]).strip("\n")
+    return Object(kind, name, declaration, "\n".join(lines[last + 1 :]).strip("\n"), tuple(members))
+
+
+def _lines(one: Object, path: str) -> Iterator[str]:
+    """Rulers and parts. What is not pasted, GET and the closing lines, stands behind a ruler that names nothing."""
+    if one.kind == "GET":
+        yield "GET"
+    if one.declaration:
+        yield _ruler(f" {one.kind} {path}: declaration ")
+        yield one.declaration
+    if one.kind == "PROPERTY":
+        yield _ruler()
+    for member in one.members:
+        # The getter of a property goes by the name of the property
+        yield from _lines(member, path) if member.kind == "GET" else ("", *_lines(member, f"{path}.{member.name}"))
+    if one.implementation:
+        yield from () if one.kind == "GET" else ("",)
+        yield _ruler(f" {one.kind} {path}: implementation ")
+        yield one.implementation
+    if one.implementation or not one.members:
+        yield _ruler()
+    if one.kind != "TYPE":
+        yield f"END_{one.kind}"
+
+
+def _ruler(title: str = "") -> str:
+    return f"// ===={title}".ljust(_RULER_WIDTH, "=")

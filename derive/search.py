@@ -1,0 +1,195 @@
+"""Search: one joint tried around the circle, the others solved at each trial, until what is left of the closure vanishes.
+
+From the reference outwards on either side, in steps that grow to half a degree: between two trials where the residual changes
+its sign in the wanted direction a root is closed in, by turns with a secant and by halving. A jump of the residual is no
+root: what is left there does not vanish. The first root of the wanted branch is the nearest to the reference. Where the
+residual vanishes at the reference without crossing zero there, in a singular pose, the reference is the root. Bounded,
+without memory, the same for whatever motion.
+
+A scan is no proof: two roots between neighbouring trials are missed. The witness measures how often.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.program import (
+    BOUNDARY,
+    DEGREE,
+    Iterate,
+    Let,
+    Select,
+    Statement,
+    Status,
+    real,
+    symbols_of,
+)
+
+STEP = DEGREE / 2
+_GROWTH = sp.Integer(8)
+_FIRST = STEP / _GROWTH**8
+"""The steps grow from here: a root at the reference itself is found however fast the residual changes."""
+_LEAST_SLOPE, _LARGEST_SLOPE = sp.Float("1e-13"), sp.Float("1e-6")
+"""How much the residual changes over the first step on both sides of a root that is crossed: less is no crossing, more a jump."""
+_REFINEMENTS = 100
+_LIMIT = 1800
+"""Passes in all: the scan, and some thirty roots of other branches that are closed in on the way."""
+_ROOT = sp.Float("1e-14")
+"""A scaled residual below this is zero."""
+
+TRIED = real("tried")
+ACCEPTED = real("accepted")
+_STATE = (
+    *("tried", "radius", "inner", "side", "closing", "halve"),
+    *("low", "low_value", "high", "high_value"),
+    *("ahead", "behind", "usable_ahead", "usable_behind", "touching"),
+)
+_NEARLY = sp.Rational(15, 16)
+_YES, _NO, _HALF = sp.Integer(1), sp.Integer(0), sp.Rational(1, 2)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One trial: statements that solve the other joints at `TRIED`, and what they leave."""
+
+    statements: tuple[Statement, ...]
+    value: sp.Expr
+    """What must vanish, a number without a unit."""
+    fits: sp.Basic
+    """Whether the trial lies on the wanted branch."""
+    possible: sp.Basic
+    """Whether the other joints have a solution at all."""
+
+
+def search_loop(trial: Trial, start: sp.Expr, crossing: sp.Symbol, idle: sp.Basic) -> Iterate:
+    """The loop; where `idle` holds it ends at once. `crossing`: +1 where the residual is to rise, -1 where it is to fall."""
+    wanted = _needs(trial, (trial.value, trial.fits, trial.possible))
+    moves, following = _moves(trial, start, crossing)
+    initial = {"tried": start, "side": _YES}
+    return Iterate(
+        state=tuple(map(real, _STATE)),
+        start=tuple(initial.get(name, _NO) for name in _STATE),
+        step=(*wanted, *moves),
+        following=following,
+        done=sp.Or(idle, sp.Gt(ACCEPTED, _HALF), sp.Gt(real("radius"), sp.pi + STEP / 2)),
+        limit=_LIMIT,
+        otherwise=Status.UNREACHABLE,
+        note="search along the joint, from its reference outwards",
+    )
+
+
+def _needs(trial: Trial, values: Sequence[sp.Basic]) -> tuple[Let, ...]:
+    """The statements that the values depend on, in order."""
+    wanted = {s for v in values for s in symbols_of(v)}
+    found: list[Let] = []
+    for s in reversed(trial.statements):
+        if isinstance(s, Let) and s.name in wanted:
+            found.append(s)
+            wanted |= symbols_of(s.value)
+    return tuple(reversed(found))
+
+
+def _moves(trial: Trial, start: sp.Expr, crossing: sp.Symbol) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
+    """What one pass decides, and the state that follows."""
+    value, usable, scanning, first, ends = map(real, ("value", "usable", "scanning", "first", "ends"))
+    closing, side, radius, inner = map(real, ("closing", "side", "radius", "inner"))
+    is_scanning, is_first = (sp.Gt(s, _HALF) for s in (scanning, first))
+    next_side, next_radius, touches = real("next_side"), real("next_radius"), sp.Gt(real("next_touching"), _HALF)
+    outwards = sp.And(sp.Gt(ends, _HALF), sp.Or(is_first, sp.Lt(side, 0)), sp.Lt(real("touching"), _HALF))
+    turns = sp.And(sp.Gt(ends, _HALF), sp.Lt(real("next_touching"), _HALF))
+    grown = Select(is_first, _FIRST, Select(sp.Lt(radius, STEP * _NEARLY), _GROWTH * radius, radius + STEP))
+    moves = (
+        Let(value, trial.value, "what is left of the closure"),
+        Let(usable, Select(trial.possible, _YES, _NO)),
+        Let(scanning, Select(sp.Gt(closing, _HALF), _NO, _YES), "or a root is being closed in"),
+        Let(first, Select(sp.Gt(radius, 0), _NO, _YES)),
+        *_crossing(crossing),
+        *_closing(trial, start),
+        *_touching(),
+        Let(next_side, Select(turns, Select(is_first, _YES, -side), side), "the other side, or one step out"),
+        Let(next_radius, Select(outwards, grown, radius)),
+        Let(real("next_inner"), Select(outwards, radius, inner)),
+        Let(real("outer"), start + next_side * next_radius),
+        Let(real("next_tried"), Select(touches, start, Select(sp.Gt(ends, _HALF), real("outer"), real("guess")))),
+    )
+    passing = sp.And(is_scanning, sp.Lt(real("touching"), _HALF))
+    outer = sp.And(passing, sp.Or(is_first, sp.Gt(side, 0)))
+    inner = sp.And(passing, sp.Or(is_first, sp.Lt(side, 0)))
+    remembered = (
+        Let(real("next_ahead"), Select(outer, value, real("ahead"))),
+        Let(real("next_behind"), Select(inner, value, real("behind"))),
+        Let(real("next_usable_ahead"), Select(outer, usable, real("usable_ahead"))),
+        Let(real("next_usable_behind"), Select(inner, usable, real("usable_behind"))),
+    )
+    return (*moves, *remembered), tuple(real(f"next_{name}") for name in _STATE)
+
+
+def _touching() -> tuple[Let, ...]:
+    """After the first step on both sides: whether the residual vanishes at the reference and does not cross zero there."""
+    value, ahead, behind = real("value"), real("ahead"), real("behind")
+    at_first = sp.And(sp.Lt(real("side"), 0), sp.Gt(real("radius"), 0), sp.Le(real("inner"), 0))
+    is_new = sp.And(sp.Gt(real("scanning"), _HALF), sp.Lt(real("touching"), _HALF), sp.Lt(real("crosses"), _HALF))
+    apart = real("apart")
+    simple = sp.And(sp.Lt(ahead * value, 0), sp.Gt(apart, _LEAST_SLOPE), sp.Lt(apart, _LARGEST_SLOPE))
+    found = sp.And(at_first, is_new, sp.Le(sp.Abs(behind), BOUNDARY))
+    return (
+        Let(apart, sp.Abs(ahead - value)),
+        Let(real("simple"), Select(simple, _YES, _NO), "a root that is crossed"),
+        Let(real("next_touching"), Select(sp.And(found, sp.Lt(real("simple"), _HALF)), _YES, _NO), "look at the reference again"),
+    )
+
+
+def _crossing(crossing: sp.Symbol) -> tuple[Let, ...]:
+    """Whether the residual crosses zero in the wanted direction since the last trial on this side."""
+    previous, before, outward, arrived = map(real, ("previous", "usable_before", "outward", "arrived"))
+    value, side = real("value"), real("side")
+    ahead = sp.Gt(side, 0)
+    rises = sp.Or(
+        sp.And(ahead, sp.Le(outward, 0), sp.Gt(arrived, 0)), sp.And(sp.Lt(side, 0), sp.Lt(outward, 0), sp.Ge(arrived, 0))
+    )
+    usable = sp.And(sp.Gt(real("usable"), _HALF), sp.Gt(before, _HALF))
+    scanned = sp.And(sp.Gt(real("scanning"), _HALF), sp.Lt(real("first"), _HALF), sp.Lt(real("touching"), _HALF))
+    return (
+        Let(previous, Select(ahead, real("ahead"), real("behind"))),
+        Let(before, Select(ahead, real("usable_ahead"), real("usable_behind"))),
+        Let(outward, crossing * side * previous),
+        Let(arrived, crossing * side * value),
+        Let(real("crosses"), Select(sp.And(scanned, usable, rises), _YES, _NO), "a root lies in between"),
+    )
+
+
+def _closing(trial: Trial, start: sp.Expr) -> tuple[Let, ...]:
+    """Close in: the bracket after this trial, whether it is done, and the next guess."""
+    value, closing, tried, side = map(real, ("value", "closing", "tried", "side"))
+    low, low_value, high, high_value = map(real, ("low", "low_value", "high", "high_value"))
+    next_low, next_low_value, next_high, next_high_value = (
+        real(f"next_{n}") for n in ("low", "low_value", "high", "high_value")
+    )
+    is_scanning = sp.Gt(real("scanning"), _HALF)
+    on_low = sp.Gt(real("on_low"), _HALF)
+    settled = sp.And(sp.Not(is_scanning), sp.Or(sp.Le(sp.Abs(value), _ROOT), sp.Ge(closing, _REFINEMENTS)))
+    ended = sp.Or(sp.Gt(real("settled"), _HALF), sp.Gt(real("touching"), _HALF))
+    vanishes = sp.And(ended, sp.Le(sp.Abs(value), BOUNDARY), trial.possible, trial.fits)
+    goes_on = sp.Or(
+        sp.And(is_scanning, sp.Gt(real("crosses"), _HALF)), sp.And(sp.Not(is_scanning), sp.Lt(real("settled"), _HALF))
+    )
+    slope, divisor = real("secant_slope"), real("secant_divisor")
+    secant = next_high - next_high_value * (next_high - next_low) / divisor
+    return (
+        Let(real("settled"), Select(settled, _YES, _NO)),
+        Let(ACCEPTED, Select(vanishes, _YES, _NO)),
+        Let(real("ends"), Select(goes_on, _NO, _YES), "go on to the next trial"),
+        Let(real("next_closing"), Select(goes_on, closing + 1, _NO)),
+        Let(real("on_low"), Select(sp.Gt(low_value * value, 0), _YES, _NO)),
+        Let(next_low, Select(is_scanning, start + side * real("inner"), Select(on_low, tried, low))),
+        Let(next_low_value, Select(is_scanning, real("previous"), Select(on_low, value, low_value))),
+        Let(next_high, Select(is_scanning, tried, Select(on_low, high, tried))),
+        Let(next_high_value, Select(is_scanning, value, Select(on_low, high_value, value))),
+        Let(real("next_halve"), Select(sp.And(goes_on, sp.Lt(real("halve"), _HALF)), _YES, _NO)),
+        Let(slope, next_high_value - next_low_value),
+        Let(divisor, Select(sp.Gt(sp.Abs(slope), 0), slope, _YES)),
+        Let(real("guess"), Select(sp.Gt(real("halve"), _HALF), (next_low + next_high) / 2, secant)),
+    )

@@ -1,0 +1,27 @@
+"""A mechanism without joints: its one frame against the chain multiplied out."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from derive.kinematics import Evidence, Kinematics
+from derive.program import Status
+from derive.run import run
+from derive.witness.checks import CLOSURE_TOLERANCE
+from derive.witness.closure import POSE, Closure
+from derive.witness.disagreement import Disagreement
+from derive.witness.samples import SEED, random_machines
+
+
+def check_still(kin: Kinematics, closure: Closure) -> Evidence:
+    """The frame of every random machine; there is nothing to solve."""
+    values = random_machines(kin, np.random.default_rng(SEED))
+    parameters = np.stack([values[name] for name in closure.parameters], axis=1)
+    outputs, status = run(kin.forward, values)
+    count = len(parameters)
+    pose = np.stack([np.broadcast_to(outputs[name], count) for name in POSE], axis=1)
+    expected = closure.frame(np.zeros((count, 0)), parameters)[:, :, 0]
+    error = float(np.max(np.abs(pose - expected)))
+    if error > CLOSURE_TOLERANCE or np.any(status != Status.OK):
+        raise Disagreement(f"the frame of a mechanism without joints: error {error:.1e}")
+    return Evidence(poses=count, closure_residual=1e-12, round_trip=1e-12, jacobian=1e-12, solutions=1)

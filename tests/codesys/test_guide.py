@@ -1,0 +1,92 @@
+"""The guide and the overview: their code is code, their names exist, and what they say of tools is what the blocks say."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from derive.__main__ import OUTPUT
+from derive.emit.st_contract import load
+from tests.codesys.parts import FILES, all_parts
+from tests.st import ast
+from tests.st.library import compile_st
+from tests.st.parse import parse
+
+ROOT = OUTPUT.parent
+GUIDE = (ROOT / "docs" / "CODESYS.md").read_text(encoding="utf-8")
+OVERVIEW = (OUTPUT / "st" / "README.md").read_text(encoding="utf-8")
+PROGRAMS = re.findall(r"```iecst\n(.*?)```", GUIDE, re.DOTALL)
+BLOCKS = {part.path: part for part in all_parts(FILES).values() if "." not in part.path}
+
+
+def closed(program: str) -> str:
+    """A program as a text: an editor of CODESYS has no closing line."""
+    return program if "END_FUNCTION_BLOCK" in program else f"{program}END_PROGRAM\n"
+
+
+@pytest.mark.parametrize("program", PROGRAMS, ids=lambda p: p.split("\n")[0])
+def test_its_code_parses(program: str) -> None:
+    (found,) = parse(closed(program), "guide")
+    assert isinstance(found, ast.Block)
+    used = {v.type.text for s in found.sections for v in s.variables if v.type.text.startswith(("Softkin_", "Kin_"))}
+    assert used <= set(BLOCKS)
+
+
+def test_a_block_can_be_called_outside_an_axis_group() -> None:
+    """The program of the guide, executed: there and back, with the numbers a SCARA of these lengths gives."""
+    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Check"))
+    needed = {name: text for name, text in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
+    library = compile_st({**needed, "PRG_Check": program})
+    made = library.new("PRG_Check")
+    for _ in range(2):
+        made()
+        assert made.status == "SMC_NO_ERROR"
+        assert (made.frame.vT.dX, made.frame.vT.dY, made.frame.vT.dZ) == pytest.approx((259.8076211353, 400.0, 10.0))
+        assert (made.back.a0, made.back.a1, made.back.a2) == pytest.approx((30.0, 60.0, 10.0))
+
+
+def test_every_choice_it_names_exists() -> None:
+    declared = {line.split()[0] for part in BLOCKS.values() for line in part.declaration.split("\n") if line.startswith("  ")}
+    for name in ("xElbowRight", "xElbowAutomatic", "xElbowSingular", "xTcpAbove", "dOffsetA1"):
+        assert name in declared, name
+    contract = load()
+    assert set(re.findall(r"PROFILE=(\w+)", GUIDE)) <= set(contract.spelling["profiles"])
+    statuses = set(re.findall(r"^\| `(SMC_\w+)` \|", GUIDE, re.MULTILINE))
+    assert statuses == {e.split(".")[-1] for e in contract.spelling["errors"].values()} - {"SMC_NO_ERROR"}
+
+
+@pytest.mark.parametrize("page", ["docs/CODESYS.md", "generated/st/README.md", "README.md"])
+def test_links_lead_somewhere(page: str) -> None:
+    path = ROOT / page
+    text = path.read_text(encoding="utf-8")
+    for target in re.findall(r"\]\(([^)]+)\)", text):
+        file, _, anchor = target.partition("#")
+        where = (path.parent / file).resolve() if file else path
+        assert where.exists(), target
+        if anchor:
+            assert anchor in {_anchor(h) for h in re.findall(r"^#+ (.*)$", where.read_text(encoding="utf-8"), re.MULTILINE)}
+
+
+def _anchor(heading: str) -> str:
+    return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+
+
+def test_the_overview_lists_every_block() -> None:
+    rows = re.findall(r"^\| \[`(\w+)`\]\((\S+)\.st\) \| ([^|]+) \| ([^|]+) \|", OVERVIEW, re.MULTILINE)
+    assert {f"{path}.st" for _, path, _, _ in rows} == {name for name in FILES if not name.startswith("softkin/")}
+    for block, path, axes, tools in rows:
+        (part,) = (p for p in all_parts({path: FILES[f"{path}.st"]}).values() if p.path == block)
+        assert f"'sm_kin_axes' := '{axes.replace(' ', ', ')}'" in part.declaration
+        assert tools == _tools(block, path, part.declaration)
+
+
+def _tools(block: str, path: str, declaration: str) -> str:
+    """By SoftMotion's rules: an image of dof zero takes any offset, of dof one those along vU, of dof three none."""
+    members = all_parts({path: FILES[f"{path}.st"]})
+    if "ISMKinematicsWithOrientationImage2" in declaration:
+        code = members["METHOD", f"{block}.GetFlangeOrientationImageWithOri"].implementation
+    else:
+        code = members["METHOD", f"{block}.GetOrientationImage"].implementation
+    image = re.findall(r"^oriInfo\.dof := TRAFO\.OrientationDOF\.(\w+);", code, re.MULTILINE)
+    return {"zero": "any", "one": "along the axis it turns about", "three": "none"}[image[-1]]

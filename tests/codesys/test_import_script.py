@@ -1,0 +1,164 @@
+"""The import script, run in a stand-in for the ScriptEngine: a library with every object, checked by a compiler."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import runpy
+import shutil
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from derive.__main__ import OUTPUT
+from tests.codesys.parts import FILES, all_parts
+from tests.codesys.python27 import beyond_python27
+from tests.codesys.scriptengine_stand_in import Code, Dut, Engine, Folder, LibraryManager, Node, Project, Property
+
+SOURCE = OUTPUT / "st"
+SCRIPT = SOURCE / "import_softkin.py"
+TITLES = ("SM3_Transformation", "SM3_Math", "SM3_Error")
+
+
+def execute(engine: Engine, *arguments: str, script: Path = SCRIPT) -> int:
+    """Run the script as CODESYS does, not imported, with the module in place; the exit code."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "scriptengine", engine)
+        patch.setattr(sys, "argv", [str(script), *arguments])
+        try:
+            runpy.run_path(str(script))
+        except SystemExit as end:
+            return int(end.code or 0)
+        return 0
+
+
+@pytest.fixture(scope="module")
+def imported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Project, str]:
+    """The project that the script makes of everything, and what it prints."""
+    engine, target = Engine(TITLES), tmp_path_factory.mktemp("codesys") / "Softkin.library"
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        assert execute(engine, str(target)) == 0
+    (project,) = engine.made
+    return project, printed.getvalue()
+
+
+def test_a_library_with_every_object(imported: tuple[Project, str]) -> None:
+    project, printed = imported
+    assert project.is_saved and Path(project.path).exists()
+    assert vars(project.information) == {"title": "Softkin", "company": "Softkin", "version": "0.1.0.0"}
+    assert _panes(project.get_children(True)) == {
+        (part.kind, path): (part.declaration, part.implementation) for (_, path), part in all_parts(FILES).items()
+    }
+    assert printed.count("\n") == 2, "one message of the compiler, and the summary"
+    assert "Build: Severity.Information: C32 Compile complete (Softkin)" in printed
+    assert f"{len(all_parts(FILES))} objects in {project.path}; errors of the compiler: 0" in printed
+
+
+def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:
+    kinds = {"FunctionBlock": "FUNCTION_BLOCK", "Function": "FUNCTION", "Enumeration": "TYPE", "Get": "GET"}
+    found = {}
+    for node in nodes:
+        if isinstance(node, Dut):
+            path, parent = node.get_name(), node.parent
+            while isinstance(parent, Node) and not isinstance(parent, Folder):
+                path = parent.get_name() if isinstance(parent, Property) else f"{parent.get_name()}.{path}"
+                path = path if not isinstance(parent, Property) else parent.get_name()
+                parent = parent.parent
+            declared = "" if node.kind == "Get" else node.textual_declaration.text
+            code = node.textual_implementation.text if isinstance(node, Code) else ""
+            found[kinds.get(node.kind, node.kind), path] = (declared, code)
+    return found
+
+
+def test_references_are_placeholders_for_the_newest_library(imported: tuple[Project, str]) -> None:
+    (manager,) = (one for one in imported[0].get_children() if isinstance(one, LibraryManager))
+    assert {t: (one.title, one.version) for t, one in manager.placeholders.items()} == {t: (t, (4, 20, 0, 0)) for t in TITLES}
+
+
+def test_folders_by_family(imported: tuple[Project, str]) -> None:
+    (top,) = (one for one in imported[0].get_children() if isinstance(one, Folder))
+    assert top.get_name() == "Softkin"
+    inside = {folder.get_name(): {one.get_name() for one in folder.get_children()} for folder in top.get_children()}
+    assert set(inside) == {name.split("/")[0] for name in FILES}
+    assert {"Softkin_Scara2_Z", "Softkin_Scara2_Z_Config", "Softkin_Scara2_Z_ReadConfig"} <= inside["scara"]
+    assert "Softkin_MatrixOrder" in inside["softkin"]
+
+
+def _copy(tmp_path: Path, old: str = "", new: str = "") -> Path:
+    """The script with one block and what it shares; in the block a text is replaced."""
+    shutil.copytree(SOURCE / "softkin", tmp_path / "softkin")
+    shutil.copy(SCRIPT, tmp_path)
+    (tmp_path / "scara").mkdir()
+    text = FILES["scara/Softkin_Scara2_Z.st"]
+    assert old in text
+    (tmp_path / "scara" / "Softkin_Scara2_Z.st").write_text(text.replace(old, new, 1) if old else text, encoding="utf-8")
+    return tmp_path / SCRIPT.name
+
+
+def test_what_does_not_compile_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    script = _copy(tmp_path, "IsInitialized := initialized;", "IsInitialized := initialised;")
+    engine = Engine(TITLES)
+    assert execute(engine, str(tmp_path / "a.library"), script=script) == 1
+    printed = capsys.readouterr().out
+    assert "Severity.Error" in printed and "initialised" in printed
+    assert "errors of the compiler: 1" in printed
+    assert engine.made[0].is_saved, "to be looked at"
+
+
+def test_a_dialog_asks_for_the_path(tmp_path: Path) -> None:
+    target = tmp_path / "asked.library"
+    assert execute(Engine(TITLES, str(target)), script=_copy(tmp_path)) == 0
+    assert target.exists()
+
+
+def _with_open_project() -> Engine:
+    engine = Engine(TITLES)
+    engine.projects.primary = object()
+    return engine
+
+
+REFUSALS: dict[str, tuple[Callable[[], Engine], tuple[str, ...], str]] = {
+    "a project is open": (_with_open_project, ("{}/a.library",), "a project is open: save and close it first"),
+    "no path": (lambda: Engine(TITLES), (), "no library was named"),
+    "a cancelled dialog": (lambda: Engine(TITLES, ""), (), "no library was named"),
+    "no library": (lambda: Engine(TITLES), ("{}/a.project",), "must end with .library"),
+    "an existing file": (lambda: Engine(TITLES), ("{}/there.library",), "exists: choose another path"),
+    "no SoftMotion": (lambda: Engine(()), ("{}/a.library",), "the library SM3_Transformation is not installed"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSALS)
+def test_refusals_are_one_line(case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    engine, arguments, message = REFUSALS[case]
+    (tmp_path / "there.library").touch()
+    assert execute(engine(), *(a.format(tmp_path) for a in arguments)) == 1
+    printed = capsys.readouterr().out
+    assert printed.startswith("error: ") and message in printed and printed.count("\n") == 1
+    assert not (tmp_path / "a.library").exists()
+
+
+def test_away_from_its_files_it_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    script = tmp_path / SCRIPT.name
+    shutil.copy(SCRIPT, script)
+    assert execute(Engine(TITLES), str(tmp_path / "a.library"), script=script) == 1
+    assert "leave it in the folder in which it came" in capsys.readouterr().out
+
+
+def test_it_is_python_2_7() -> None:
+    assert beyond_python27(SCRIPT.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize(
+    "newer",
+    [
+        "f'{a}'", "def f(a: int): pass", "def f() -> int: pass", "def f(*, a): pass", "a: int = 1", "raise A from b",
+        "(a := 1)", "def f():\n  yield from a", "async def f(): pass", "a @ b", "f(*a, *b)", "[*a]", "{**a}", "1_000",
+        "class A(B, metaclass=C): pass", "def f():\n  nonlocal a", "def f(a, /): pass", "a, *b = c", "print(1, end='')",
+        "super().a()", "match a:\n  case 1: pass", "a = 'é'",
+    ],
+)  # fmt: skip
+def test_what_is_newer_is_seen(newer: str) -> None:
+    assert beyond_python27(newer) != []

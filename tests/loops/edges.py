@@ -1,0 +1,135 @@
+"""Machines at the end of what can be assembled, by mechanism: their dimensions, and axis values where something ends."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import cos, radians, sin, sqrt
+
+JUST = 1.0 - 1e-13
+"""Rods shorter by this still meet, flat: the boundary belongs to the workspace."""
+Edge = tuple[Mapping[str, float], tuple[float, ...]]
+
+
+def azimuths(*values: float) -> dict[str, float]:
+    return {f"azimuth_{i}": v for i, v in enumerate(values, 1)}
+
+
+def arms(**sizes: float) -> dict[str, float]:
+    """The same dimensions for three arms."""
+    return {f"{name}_{i}": size for name, size in sizes.items() for i in (1, 2, 3)}
+
+
+def rails(arm: float, *points: tuple[float, float]) -> dict[str, float]:
+    named = {f"rail_{c}_{i}": v for i, point in enumerate(points, 1) for c, v in zip("xy", point, strict=True)}
+    return {"arm_length": arm} | named
+
+
+def five_bar(inner: float, outer: float, displacement: float, plate: float) -> dict[str, float]:
+    return {"inner_arm": inner, "outer_arm": outer, "displacement": displacement, "tcp_displacement": plate}
+
+
+def linked(inner: float, outer: float, displacement: float, plate: float) -> dict[str, float]:
+    return {"inner_arm": inner, "outer_arm": outer, "displacement": displacement, "tcp_link_distance": 2 * plate}
+
+
+def links(*lengths: float) -> dict[str, float]:
+    return {f"link_length_{i}": v for i, v in enumerate(lengths, 1)}
+
+
+def rotary(rod: float, drives: float, plate: float) -> dict[str, float]:
+    sizes = {"arm_length_1": 200.0, "arm_length_2": rod, "arm_1_radius": drives, "stewart_radius": plate}
+    return sizes | {"max_angle_ball_joint": 45.0}
+
+
+def inclined(rod: float, inner: float) -> dict[str, float]:
+    sizes = {"outer_radius": 300.0, "inner_radius": inner, "arm_length": rod}
+    return sizes | {"rail_angle": 30.0, "max_angle_ball_joint": 45.0}
+
+
+T_LAYOUT = azimuths(0.0, 90.0, 180.0)
+CORNERS = ((150.0, 0.0), (0.0, 150.0), (-150.0, 0.0))
+FIVE_BARS: tuple[Edge, ...] = (
+    (five_bar(250.0, 330.0 * JUST, 120.0, 40.0), (0.0, 0.0)),
+    (five_bar(250.0, 300.0, 120.0, 40.0), (0.0, 0.0)),
+    (five_bar(250.0, 300.0, 40.0, 40.0), (90.0, 90.0)),
+)
+EDGES: dict[str, tuple[Edge, ...]] = {
+    "Kin_P2C_Type1": FIVE_BARS,
+    "Kin_Bipod_Rotary": FIVE_BARS,
+    "Kin_P2C_Type2": (
+        (linked(250.0, 330.0 * JUST, 120.0, 40.0), (180.0, 0.0)),
+        (linked(250.0, 300.0, 120.0, 40.0), (180.0, 0.0)),
+        (linked(250.0, 300.0, 40.0, 40.0), (90.0, 90.0)),
+    ),
+    "Kin_P2X_Type1": (
+        ({"arm_length_1": 400.0 * JUST, "arm_length_2": 400.0 * JUST}, (-400.0, 400.0)),
+        ({"arm_length_1": 400.0, "arm_length_2": 400.0}, (-500.0, 500.0)),
+        ({"arm_length_1": 400.0, "arm_length_2": 400.0}, (70.0, 70.0)),
+    ),
+    "Kin_P2X_Type2": (
+        ({"arm_length": 400.0 * JUST}, (-400.0, 400.0)),
+        ({"arm_length": 400.0}, (-500.0, 500.0)),
+        ({"arm_length": 400.0}, (300.0, -300.0)),
+    ),
+    "MC_KIN_TYPE_12_XY": (
+        (links(300.0, 350.0, 200.0 * JUST, 300.0, 400.0), (0.0, 0.0)),
+        (links(300.0, 350.0, 200.0, 299.0, 400.0), (0.0, 0.0)),
+        (links(300.0, 350.0, 200.0, 299.0, 300.0), (0.0, -90.0)),
+    ),
+    "Kin_Delta_P3C_Type3": (
+        (arms(base_radius=140.0, inner_arm=200.0, outer_arm=300.0 * JUST, tcp_radius=40.0) | T_LAYOUT, (0.0, 0.0, 0.0)),
+        (arms(base_radius=140.0, inner_arm=200.0, outer_arm=250.0, tcp_radius=40.0) | T_LAYOUT, (0.0, 0.0, 0.0)),
+        (arms(base_radius=140.0, inner_arm=200.0, outer_arm=450.0, tcp_radius=140.0) | T_LAYOUT, (90.0, 90.0, 90.0)),
+    ),
+    "Kin_Tripod_Rotary": (
+        (rotary(260.0 * JUST, 140.0, 200.0), (180.0, 180.0, 180.0)),
+        (rotary(200.0, 140.0, 200.0), (180.0, 180.0, 180.0)),
+        (rotary(450.0, 200.0, 200.0), (90.0, 90.0, 90.0)),
+    ),
+    "Kin_Tripod_Linear": (
+        (inclined(240.0 * JUST, 60.0), (0.0, 0.0, 0.0)),
+        (inclined(200.0, 60.0), (0.0, 0.0, 0.0)),
+        (inclined(200.0, 300.0), (0.0, 0.0, 0.0)),
+    ),
+    "Kin_Tripod_P3Z": (
+        (rails(150.0 * JUST, *CORNERS), (20.0, 20.0, 20.0)),
+        (rails(100.0, *CORNERS), (20.0, 20.0, 20.0)),
+        (rails(150.0, (100.0, 0.0), (-100.0, 0.0), (0.0, 10.0)) | {"tcp_displacement": 10.0 - 1e-12}, (20.0, 20.0, 20.0)),
+    ),
+}
+"""Rods that meet flat (nothing holds the plate), rods that do not meet, centres that coincide or lie on a line."""
+OTHER_WAY_ROUND: dict[str, Edge] = {
+    "Kin_Delta_P3C_Type3": (
+        arms(base_radius=140.0, inner_arm=200.0, outer_arm=450.0, tcp_radius=45.0) | azimuths(180.0, 90.0, 0.0),
+        (10.0, 20.0, 30.0),
+    ),
+    "Kin_Tripod_P3Z": (rails(200.0, *CORNERS[::-1]), (10.0, 20.0, 30.0)),
+    "MC_KIN_TYPE_12_XY": (links(300.0, 350.0, 110.0, 280.0, 90.0) | {"swap_xy": 1.0}, (10.0, 20.0)),
+}
+"""Machines whose legs are numbered the other way round, and axis values."""
+_PLANE = sqrt(300.0**2 - (140.0 + 200.0 - 50.0) ** 2)
+"""The height of the drives of the rotary tripod below: its origin is the plate."""
+FIVE_BAR_PLACES = ((-80.0, 0.0, 0.0), (80.0, 0.0, 0.0))
+PLACES: dict[str, tuple[tuple[Mapping[str, float], tuple[tuple[float, ...], ...]], ...]] = {
+    "Kin_P2C_Type1": ((five_bar(250.0, 350.0, 120.0, 40.0), FIVE_BAR_PLACES),),
+    "Kin_Bipod_Rotary": ((five_bar(250.0, 350.0, 120.0, 40.0), FIVE_BAR_PLACES),),
+    "Kin_P2C_Type2": ((linked(250.0, 350.0, 120.0, 40.0), FIVE_BAR_PLACES),),
+    "Kin_P2X_Type1": (({"arm_length_1": 400.0, "arm_length_2": 380.0}, ((0.0, -390.0, 0.0), (0.0, -410.0, 0.0))),),
+    "MC_KIN_TYPE_12_XY": (
+        (links(300.0, 350.0, 110.0, 280.0, 90.0), ((0.0, 0.0, 0.0), (60.0, 0.0, 0.0))),
+        (links(300.0, 350.0, 300.0, 280.0, 90.0), ((0.0, -650.0, 0.0), (650.0, 0.0, 0.0))),
+    ),
+    "Kin_Delta_P3C_Type3": (
+        (
+            arms(base_radius=140.0, inner_arm=200.0, outer_arm=250.0, tcp_radius=45.0) | T_LAYOUT,
+            ((95.0, 0.0, 0.0), (0.0, 95.0, 0.0), (-95.0, 0.0, 0.0)),
+        ),
+    ),
+    "Kin_Tripod_Rotary": (
+        (
+            rotary(300.0, 140.0, 50.0),
+            tuple((90.0 * cos(radians(a)), 90.0 * sin(radians(a)), _PLANE) for a in (180.0, 300.0, 60.0)),
+        ),
+    ),
+}
+"""Places that one leg after the other cannot aim at: its joint on the plate is on the axis of its drive, or too far away."""

@@ -1,0 +1,78 @@
+"""Machines that cannot be, and ends that no axis can see."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import softkin
+from softkin import KinematicsError, Status
+
+from derive.mechanism import Mechanism
+from tests.mechanisms.both_ways import inverse
+from tests.mechanisms.loops import LoopMachine
+
+SWING = "max_angle_ball_joint"
+HAIR = 1e-9
+
+
+def test_a_ball_joint_ends_sharply(mechanism: Mechanism, machines: tuple[LoopMachine, ...]) -> None:
+    """A limit a hair above the swing of a pose answers, a hair below refuses; forward kinematics does not ask."""
+    assert bool(mechanism.bounds) == (SWING in machines[0].robot.parameters)
+    for machine in machines if mechanism.bounds else ():
+        axes = machine.draw(8, np.random.default_rng(1))
+        positions, rotations = machine.closure.poses(axes)
+        values = np.abs(machine.closure.at(machine.closure.joints(axes), positions, [b.value for b in mechanism.bounds]))
+        swings = np.degrees(np.arcsin(values.max(axis=1)))
+        for row, swing in enumerate(swings):
+            one = slice(row, row + 1)
+            for share, expected in ((1 + HAIR, Status.OK), (1 - HAIR, Status.UNREACHABLE), (0.5, Status.UNREACHABLE)):
+                robot = machine.changed(**{SWING: swing * share})
+                _, statuses = inverse(robot, positions[one], rotations[one], robot.forward_batch(axes[one])[2], axes[one])
+                assert statuses[0] == expected
+                assert robot.forward(axes[row]) == machine.robot.forward(axes[row])
+
+
+DELTA = {f"{name}_{i}": v for name, v in (("base_radius", 140.0), ("inner_arm", 200.0), ("outer_arm", 450.0)) for i in "123"}
+TRIPOD = {"arm_length_1": 200.0, "arm_length_2": 450.0, "arm_1_radius": 140.0, "max_angle_ball_joint": 45.0}
+RAILS = {f"rail_{c}_{i}": v for c, vs in (("x", (0.0, -130.0, 130.0)), ("y", (150.0, -75.0, -75.0))) for i, v in enumerate(vs, 1)}
+LINE = {f"rail_{c}_{i}": v for c, vs in (("x", (100.0, 200.0, 300.0)), ("y", (10.0, 20.0, 30.0))) for i, v in enumerate(vs, 1)}
+
+
+IMPOSSIBLE = {
+    "a plate smaller than its joints": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 19.99, "distance": 40.0}, "stewart"),
+    "rods that cannot reach": ("Kin_Tripod_Rotary", TRIPOD, {"arm_length_2": 339.99}, "reach"),
+    "rods that cannot reach inward": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 900.0}, "reach"),
+    "rails on a line": ("Kin_Tripod_P3Z", {"arm_length": 269.0}, LINE, "line"),
+    "rails nowhere": ("Kin_Tripod_P3Z", {"arm_length": 269.0}, {}, "origin"),
+    "a plate larger than the rails": ("Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 150.01}, "rail"),
+    "a plate larger than rail 2": (
+        "Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 20.0, "rail_x_2": -9.0, "rail_y_2": -9.0}, "rail 2"
+    ),
+    "a plate larger than rail 3": (
+        "Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 20.0, "rail_x_3": 10.0, "rail_y_3": -10.0}, "rail 3"
+    ),
+    "arms all the same way": ("Kin_Delta_P3C_Type3", DELTA, {f"azimuth_{i}": 30.0 for i in "123"}, "azimuth"),
+    "two arms the same way": ("Kin_Delta_P3C_Type3", DELTA, {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": 90.0}, "azimuth"),
+}  # fmt: skip
+POSSIBLE = {
+    "a plate as small as its joints": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 20.0, "distance": 40.0}),
+    "rods that just reach": ("Kin_Tripod_Rotary", TRIPOD, {"arm_length_2": 340.01}),
+    "a plate almost as large as the rails": ("Kin_Tripod_P3Z", {"arm_length": 269.0} | RAILS, {"tcp_displacement": 149.99}),
+}
+
+
+@pytest.mark.parametrize("what", IMPOSSIBLE)
+def test_dimensions_that_form_no_machine(what: str) -> None:
+    """One clear message about the parameters, and no robot."""
+    name, given, changes, said = IMPOSSIBLE[what]
+    with pytest.raises(KinematicsError, match=said) as refused:
+        softkin.catalogue()[name](**given | changes)
+    assert refused.value.status is Status.NOT_INITIALIZED
+    assert name in str(refused.value)
+
+
+@pytest.mark.parametrize("what", POSSIBLE)
+def test_the_ends_of_what_is_possible(what: str) -> None:
+    name, given, changes = POSSIBLE[what]
+    robot = softkin.catalogue()[name](**given | changes)
+    assert robot.forward_batch(np.random.default_rng(1).uniform(-90.0, 90.0, (200, 3)))[3].min() == Status.OK

@@ -1,0 +1,118 @@
+"""Profiles of the SoftMotion contract: which interfaces an older library gets, and one line that changes one spelling."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from functools import lru_cache
+from pathlib import Path
+
+import pytest
+
+from derive.__main__ import main
+from derive.build import build
+from derive.catalogue import MECHANISMS, load
+from derive.emit.st import StructuredTextFiles
+from derive.emit.st_contract import _FILE
+from derive.emit.st_contract import load as contract
+from derive.kinematics import Kinematics
+from tests.st import ast
+from tests.st.library import compile_st
+
+BLOCK = "scara/Kin_Scara4_ZCcoupled_Type1.st"
+LEFT_OUT = ("ISMKinematicWithConfigurations4", "ISMKinPeriodHandling", "ISMKinematicsWithOrientationImage2")
+
+
+@lru_cache
+def kinematics() -> Kinematics:
+    """A mechanism that implements every interface of a position kinematics."""
+    return build(load(MECHANISMS / "kin_scara4_zccoupled_type1.py"))
+
+
+@lru_cache
+def rendered(profile: str | None) -> dict[str, str]:
+    return StructuredTextFiles(profile).render((kinematics(),))
+
+
+def block(profile: str | None) -> ast.Block:
+    files = {name: text for name, text in rendered(profile).items() if name.endswith(".st")}
+    found = compile_st(files).objects["Kin_Scara4_ZCcoupled_Type1"]
+    assert isinstance(found, ast.Block)
+    return found
+
+
+def test_an_older_library_gets_the_predecessors() -> None:
+    current, older = block(None), block("before_4_11")
+    assert {f"TRAFO.{name}" for name in LEFT_OUT} <= set(current.implements)
+    assert [name for name in older.implements if name.removeprefix("TRAFO.") in LEFT_OUT] == []
+    assert "TRAFO.ISMKinematicWithConfigurations3" in older.implements
+    assert len(older.implements) == len(current.implements) - 2
+
+
+def test_the_methods_of_what_is_left_out_are_left_out() -> None:
+    gone = {m.name for m in block(None).methods} - {m.name for m in block("before_4_11").methods}
+    assert gone == {"IsConfigSingular", "GetPeriods", "GetFlangeOrientationImageTotal", "GetFlangeOrientationImageWithOri"}
+
+
+def test_plcopen_follows_the_profile() -> None:
+    text = rendered("before_4_11")["softkin.xml"]
+    assert "ISMKinematicWithConfigurations3" in text
+    assert not any(name in text for name in LEFT_OUT)
+
+
+def test_the_oldest_documented_library_has_them_all() -> None:
+    assert contract("4.11").omits == contract(None).omits == frozenset()
+    assert rendered("4.11") == rendered(None)
+
+
+def test_an_interface_comes_with_its_library(tmp_path: Path) -> None:
+    """What the documentation first lists for a later library, a profile for an earlier one leaves out."""
+    table = "[interfaces.ISMKinPeriodHandling]\nsince = "
+    text = _FILE.read_text(encoding="utf-8")
+    assert f'{table}"4.11"' in text
+    changed = tmp_path / "softmotion.toml"
+    changed.write_text(text.replace(f'{table}"4.11"', f'{table}"4.14"'), encoding="utf-8")
+    assert contract("4.11", changed).omits == {"ISMKinPeriodHandling"}
+    assert contract("current", changed).omits == frozenset()
+    assert contract("4.11", changed).available("ISMKinPeriodHandling") is None
+
+
+def test_what_is_not_documented_says_so() -> None:
+    """A spelling that no document settles stands under its heading, each with a comment above it."""
+    head, _, rest = _FILE.read_text(encoding="utf-8").partition("# ---- Not documented ")
+    section = rest.partition("# ---- ")[0]
+    for key in ("linear", "NOT_INITIALIZED", "UNREACHABLE", "access", "description"):
+        lines = section.split("\n")
+        (at,) = (n for n, line in enumerate(lines) if line.startswith(f"{key} ="))
+        above = next(line for line in reversed(lines[:at]) if line.startswith(("#", "[")))
+        assert above.startswith("#"), key
+    assert "Not documented" in head, "the profile of an older library"
+
+
+@pytest.mark.parametrize("command", ["generate", "check"])
+def test_an_unknown_profile_is_refused_at_once(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = [command, "--output", str(tmp_path / "out"), "--profile", "4.99"]
+    assert main(arguments) == 1
+    printed = capsys.readouterr()
+    assert printed.err == "error: no profile is called '4.99'; there are current, 4.11, before_4_11\n"
+    assert printed.out == "", "before anything is derived"
+
+
+def test_a_profile_is_generated_and_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder, output = tmp_path / "mechanisms", tmp_path / "out"
+    folder.mkdir()
+    source = (MECHANISMS / "kin_scara2_z.py").read_text(encoding="utf-8")
+    (folder / "kin_scara2_z.py").write_text(source, encoding="utf-8")
+    given = ["--output", str(output), "--mechanisms", str(folder)]
+    assert main(["generate", *given, "--profile", "before_4_11"]) == 0
+    assert main(["check", *given, "--profile", "before_4_11"]) == 0
+    assert main(["check", *given]) == 1
+    assert "differs from a fresh generation" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("given", "wanted"), [("PROFILE=before_4_11", " --profile before_4_11"), ("PROFILE=", "")])
+@pytest.mark.parametrize("target", ["generate", "check"])
+def test_make_hands_the_profile_on(target: str, given: str, wanted: str) -> None:
+    command = ["make", "--dry-run", target, given]
+    done = subprocess.run(command, cwd=MECHANISMS.parents[1], capture_output=True, text=True, check=True)
+    assert re.search(rf"-m derive {target}{wanted} *\n", done.stdout)
