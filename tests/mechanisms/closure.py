@@ -20,6 +20,8 @@ from derive.program import DEGREE
 Array = NDArray[np.float64]
 STEP = 1e-30
 ONE_DEGREE = np.pi / 180.0
+COLUMNS = {Turning.NONE: [], Turning.ABOUT_Z: [0, 1, 2], Turning.DIRECTION: [2], Turning.FULL: [0, 1, 2]}
+"""What of the commanded rotation is followed: its columns."""
 POSITION = (X.symbol, Y.symbol, Z.symbol)
 
 
@@ -34,8 +36,9 @@ class Closure:
         self.angles = np.array([j.is_angle for j in mechanism.joints])
         self.task = ["xyz".index(c) for c in mechanism.task.position]
         self.follows_turn = mechanism.task.turning is Turning.ABOUT_Z
-        self._equations: list[sp.Expr] = list(mechanism.closure)
         self.follows_rotation = mechanism.task.turning is not Turning.NONE
+        self.columns = COLUMNS[mechanism.task.turning]
+        self._equations: list[sp.Expr] = list(mechanism.closure)
 
     def joints(self, axes: Array) -> Array:
         """Joint values in radians and lengths: motor = axis - offset, joint = motor + coupling."""
@@ -90,7 +93,7 @@ class Closure:
             return self._stated(joints, positions)
         position, rotation = self.frames(joints)
         lengths = (position - positions)[:, self.task]
-        return np.hstack([lengths, (rotation - rotations).reshape(-1, 9)]) if self.follows_rotation else lengths
+        return np.hstack([lengths, (rotation - rotations)[:, :, self.columns].reshape(len(lengths), -1)])
 
     def jacobian(self, axes: Array, positions: Array) -> Array:
         """Rows of the task by axes, per radian for an axis in degrees."""
@@ -106,6 +109,8 @@ class Closure:
         rotations = self.frames(self.joints(axes))[1]
         spins = np.einsum("nika,njk->nija", spin.reshape(-1, 3, 3, axes.shape[1]), rotations)  # dR times R transposed
         twist = np.stack([spins[:, 2, 1], spins[:, 0, 2], spins[:, 1, 0]], axis=1)
+        if self.columns == [2]:  # turns about the x and y of the flange tilt the tool
+            twist = np.einsum("nij,nia->nja", rotations[:, :, :2], twist)
         return np.concatenate([by_position, twist[:, 2:] if self.follows_turn else twist], axis=1) / self.units
 
     def indicators(self, joints: Array) -> Array:

@@ -141,11 +141,21 @@ def _gantry_head(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
     return *(q[i] + sum(r * o for r, o in zip(rotation[i], flange, strict=True)) for i in range(3)), rotation
 
 
+def _five_axes(p: Mapping[str, float], q: Sequence[Array]) -> Pose:
+    """The azimuth turns the inclination: the tool along +Z, or along -Z, goes to +X with a positive inclination."""
+    side, a, b = p["tool_side"], q[3], q[4]
+    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), side * np.sin(b)
+    rotation = ((ca * cb, -sa, ca * sb), (sa * cb, ca, sa * sb), (-sb, 0 * a, cb))
+    reach = side * p["tool_length"]
+    return q[0] + reach * ca * sb, q[1] + reach * sa * sb, q[2] + reach * cb, rotation
+
+
 CARTESIAN = _carriage((1, 0), (0, 1))
 H_BOT = _carriage((0.5, -0.5), (0.5, 0.5))
 H_GANTRY = _carriage((0.5, -0.5), (-0.5, -0.5))
 T_GANTRY = _carriage((0.5, 0.5), (-0.5, 0.5))
 FORMULAS: dict[str, Formula] = {
+    "Kin_5Axes": _five_axes,
     "Kin_Ac6_TXTYTZRYRXRZ": _gantry_head,
     "Kin_Ac6_ThreeParallel": _three_parallel,
     "Kin_ArticulatedRobot_6DOF": _articulated,

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from derive.catalogue import catalogue
 from derive.mechanism import Mechanism, Role, Turning
 from tests.mechanisms.closure import POSITION, Array, Closure, derivative
-from tests.mechanisms.machines import Machine
+from tests.mechanisms.machines import TURNS, Machine
 
 LOOPS = tuple(m for _, m in catalogue() if m.rods and m.task.turning is not Turning.FULL)
 """Loops whose plate keeps its orientation. One whose plate turns has tests of its own: `test_hexapod.py`."""
@@ -35,7 +35,6 @@ class LoopClosure(Closure):
         super().__init__(mechanism, parameters)
         assert mechanism.assembly is not None
         self.reach = reach
-        self._met: dict[bytes, Array] = {}
         self._mode = mechanism.assembly.signs[bool(parameters[mechanism.assembly.parameter])]
         self._side = mechanism.assembly.indicator * sp.sign(mechanism.assembly.handedness)
         self._room = [b.largest - sp.Abs(b.value) for b in mechanism.bounds]
@@ -44,20 +43,15 @@ class LoopClosure(Closure):
 
     def poses(self, axes: Array) -> tuple[Array, Array]:
         """Position and rotation at axis values; not a number where nothing, or nothing on this machine's side, closes."""
-        rows = np.ascontiguousarray(axes, dtype=float)
-        if rows.tobytes() not in self._met:  # the same axis values are asked again and again
-            self._met[rows.tobytes()] = self._assembled(self.joints(rows))
-        return self._met[rows.tobytes()].copy(), np.tile(np.eye(3), (len(axes), 1, 1))
-
-    def _assembled(self, joints: Array) -> Array:
-        found = np.full((len(joints), 3), np.nan)
+        joints = self.joints(axes)
+        found = np.full((len(axes), 3), np.nan)
         wanted = (self.positive(joints) > 0).all(axis=1)
         for direction in (*DIRECTIONS, *-DIRECTIONS):
             rows = np.flatnonzero(np.isnan(found[:, 0]) & wanted)
             positions, closed = self.assembly_from(joints[rows], direction)
             mine = closed & (self.side(joints[rows], positions) > 0)
             found[rows[mine]] = positions[mine]
-        return found
+        return found, np.tile(np.eye(3), (len(axes), 1, 1))
 
     def assembly_from(self, joints: Array, direction: Array) -> tuple[Array, Array]:
         """Where Newton's method ends that starts far away in a direction, and whether the loop closes there."""
@@ -109,15 +103,13 @@ class LoopMachine(Machine):
 
     closure: LoopClosure
 
-    @property
-    def branches_meet_together(self) -> bool:
-        """Not of a loop: a working mode may be on the side where the machine is not assembled."""
-        return False
-
-    def draw(self, count: int, rng: Generator) -> Array:
-        """Random axis values of regular poses, over several turns where an axis has them."""
-        chosen = self.pool[rng.integers(len(self.pool), size=count)]
+    def draw(self, count: int, rng: Generator, farthest: float = TURNS) -> Array:
+        """Random axis values of regular poses, over several turns where an axis has them and `farthest` (degrees) allows."""
         turning = np.array([j.multi_turn for j in self.mechanism.joints])
+        pool = self.pool[np.abs(self.pool[:, turning]).max(axis=1, initial=0.0) < farthest]
+        chosen = pool[rng.integers(len(pool), size=count)]
+        if farthest < TURNS:
+            return chosen
         return chosen + 360.0 * turning * rng.integers(-2, 3, chosen.shape)
 
     def is_regular(self, axes: Array) -> Array:

@@ -18,7 +18,7 @@ from tests.mechanisms.closure import Array, Closure
 
 MECHANISMS = tuple(m for _, m in catalogue() if not m.rods and not m.is_orientation and m.search is None)
 """The serial mechanisms: machines of closed loops are in `loops.py`, those of a platform in tests/hexapod, orientation
-kinematics in tests/coupling, what is searched along in tests/search."""
+kinematics in tests/coupling."""
 WITHOUT_LENGTHS = 500.0
 """The reach assumed of a machine that has no lengths."""
 TURNS = 1000.0
@@ -79,8 +79,11 @@ class Machine:
 
     @property
     def branches_meet_together(self) -> bool:
-        """Whether every branch answers where one does: two roots of one equation do, several equations each have a reach."""
-        return self.robot.BRANCHES <= 1
+        """Whether every branch answers where one does: two roots of one equation do, several equations each have a reach.
+
+        Some working modes of a loop are on its other side.
+        """
+        return self.robot.BRANCHES <= 1 and not self.mechanism.rods
 
     @property
     def is_spatial(self) -> bool:

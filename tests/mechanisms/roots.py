@@ -8,9 +8,8 @@ from tests.mechanisms.closure import STEP, Array
 from tests.mechanisms.machines import Machine
 
 STARTS = 32
-"""Newton's method starts from so many places."""
 MANY_STARTS = 120
-"""Of a machine with several branches, and twice as many for every branch after the third."""
+"""Of a machine with several branches."""
 STEPS = 25
 SAME = 1e-6
 """Solutions nearer than this (radians, or per reach) are one."""
@@ -22,7 +21,7 @@ def solutions(machine: Machine, position: Array, rotation: Array) -> list[Array]
     closure = machine.closure
     rng = np.random.default_rng(77)
     scale = np.where(closure.angles, 1.0, machine.reach)
-    starts = STARTS if machine.branches_meet_together else max(MANY_STARTS, STARTS * 2 ** (len(machine.mechanism.branches) - 1))
+    starts = MANY_STARTS if machine.robot.BRANCHES > 1 else STARTS
     joints = rng.uniform(-1, 1, (starts, len(scale))) * np.where(closure.angles, np.pi, 2 * machine.reach)
     joints = principal(machine, solved_from(machine, joints, position, rotation), position, rotation)
     found: list[Array] = []
@@ -70,8 +69,9 @@ def _newton(machine: Machine, joints: Array, position: Array, rotation: Array, s
 
 def _equations(machine: Machine, joints: Array, position: Array, rotation: Array) -> Array:
     """The commanded part of the closure at one pose, lengths per reach."""
-    count, lengths = len(joints), len(machine.mechanism.task.position)
+    count = len(joints)
     found = machine.closure.equations(joints, np.tile(position, (count, 1)), np.tile(rotation, (count, 1, 1)))
+    lengths = found.shape[1] - 3 * len(machine.closure.columns)
     return np.hstack([found[:, :lengths] / machine.reach, found[:, lengths:]])
 
 

@@ -26,9 +26,9 @@ PLANE = 1e-6
 
 
 def lengths(machine: Machine) -> list[float]:
-    """Of its links: of a loop, coordinates, which may be negative, are none."""
-    own = [p for p in machine.mechanism.parameters if p.role in (*LENGTHS, Role.DISTANCE)]
-    return [abs(machine.robot.parameters[p.name]) for p in own if p.low >= 0.0 or not machine.mechanism.rods]
+    """Of its links: coordinates of a loop, which may be negative, are none."""
+    counted = [p for p in machine.mechanism.parameters if p.role in (*LENGTHS, Role.DISTANCE)]
+    return [abs(machine.robot.parameters[p.name]) for p in counted if p.low >= 0.0 or not machine.mechanism.rods]
 
 
 def turned(machine: Machine, count: int) -> tuple[Array, Array]:
@@ -92,6 +92,7 @@ def test_reach_and_hole(machines: tuple[Machine, ...]) -> None:
         assert all(locus.branch is None for machine in machines for locus in loci(machine))
 
 
+@pytest.mark.serial
 def test_where_two_branches_meet_in_space(machines: tuple[Machine, ...]) -> None:
     """On the one side of a fold both answer, however near; on the other none does, but for rounding."""
     folds = 0

@@ -38,7 +38,7 @@ SPATIAL = tuple(m for m in MECHANISMS if machines_of(m)[0].is_spatial and m.bran
 
 def robots(mechanism: Mechanism) -> Mapping[str, Machine]:
     """Robots by their published dimensions; with equal links and nothing else; random ones."""
-    bare = {p.name: 250.0 if p.role in LENGTHS else 0.0 for p in mechanism.parameters}
+    bare = {p.name: 250.0 for p in mechanism.parameters if p.role in LENGTHS}
     found = {name: machine(mechanism, name, given) for name, given in ROBOTS.get(mechanism.name, {}).items()}
     return {**found, "bare": machine(mechanism, "bare", bare), "random": machines_of(mechanism)[-1]}
 

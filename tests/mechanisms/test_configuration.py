@@ -130,7 +130,7 @@ def test_wrong_bytes_are_refused(machines: tuple[Machine, ...]) -> None:
                 table = own.astype(int)
                 table[2, branch] = byte
                 found, statuses = robot.inverse_batch(positions, rotations, table)
-                clean, expected = robot.inverse_batch(positions, rotations)
+                clean, expected = robot.inverse_batch(positions, rotations, own)
                 assert statuses[2] == Status.BAD_INPUT
                 assert np.isnan(found[2]).all()
                 assert (np.delete(statuses, 2) == np.delete(expected, 2)).all()

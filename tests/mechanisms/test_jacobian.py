@@ -9,6 +9,12 @@ from tests.mechanisms.closure import Array
 from tests.mechanisms.machines import REGULAR, Machine
 
 ROUNDING = 1e-12
+TURNS = {
+    Turning.NONE: (),
+    Turning.ABOUT_Z: ("turn z",),
+    Turning.DIRECTION: ("tilt x", "tilt y"),
+    Turning.FULL: ("turn x", "turn y", "turn z"),
+}
 
 
 def jacobians(machine: Machine, axes: Array) -> Array:
@@ -17,7 +23,7 @@ def jacobians(machine: Machine, axes: Array) -> Array:
 
 def scaled(machine: Machine, matrices: Array) -> Array:
     """Lengths measured in reaches: rows of positions and columns of linear axes."""
-    rows = np.array([1.0 if r.startswith("turn") else machine.reach for r in machine.robot.JACOBIAN_ROWS])
+    rows = np.array([1.0 if r.startswith(("turn", "tilt")) else machine.reach for r in machine.robot.JACOBIAN_ROWS])
     columns = np.where(machine.closure.angles, 1.0, machine.reach)
     return matrices / rows[:, None] * columns
 
@@ -35,8 +41,7 @@ def exponents(machine: Machine, axes: Array) -> Array:
 
 
 def test_rows_are_the_task(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
-    turns = {Turning.NONE: "", Turning.ABOUT_Z: "z", Turning.FULL: "xyz"}[mechanism.task.turning]
-    assert (*mechanism.task.position, *(f"turn {c}" for c in turns)) == machines[0].robot.JACOBIAN_ROWS
+    assert (*mechanism.task.position, *TURNS[mechanism.task.turning]) == machines[0].robot.JACOBIAN_ROWS
 
 
 def test_it_is_the_derivative_of_the_closure(machines: tuple[Machine, ...]) -> None:
@@ -88,13 +93,14 @@ def _is_type_2(machine: Machine, margin: str) -> bool:
 
 
 def test_branch_margins_are_the_indicators(machines: tuple[Machine, ...]) -> None:
-    """In sign, and in size where the indicator is a sine; a length is scaled by what depends on parameters alone, as in loops."""
+    """In sign, and in size where the indicator is a sine; a length is scaled by what depends on parameters alone."""
     for machine in machines:
         axes = machine.draw(60, np.random.default_rng(5))
         indicators = machine.closure.indicators(machine.closure.joints(axes))
         for i, branch in enumerate(machine.mechanism.branches):
             column = machine.robot.MARGINS.index(branch.margin)
-            share = margins(machine, axes)[:, column] / indicators[:, i]
-            assert (share > 0).all()
-            assert np.abs(share / share[0] - 1).max() < ROUNDING / REGULAR
-            assert machine.mechanism.rods or machine.largest[i] != 1.0 or abs(share[0] - 1) < ROUNDING / REGULAR
+            found = margins(machine, axes)[:, column]
+            is_length = bool(machine.mechanism.rods) or machine.largest[i] != 1.0
+            constant = indicators[0, i] / found[0] if is_length else 1.0
+            assert constant > 0.0
+            assert np.abs(found * constant - indicators[:, i]).max() < ROUNDING / REGULAR * np.abs(indicators).max()

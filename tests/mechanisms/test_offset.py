@@ -64,7 +64,7 @@ def drawn(machine: Machine, seed: int) -> tuple[Array, Array]:
 
 def test_who_offers_it(mechanism: Mechanism, machines: tuple[Machine, ...]) -> None:
     for machine in machines:
-        expected = mechanism.name not in WITHOUT and mechanism.task.turning is not Turning.FULL
+        expected = mechanism.name not in WITHOUT and mechanism.task.turning not in (Turning.DIRECTION, Turning.FULL)
         assert hasattr(machine.robot, "inverse_offset") == expected
         assert hasattr(machine.robot, "configuration_offset") == expected
 
@@ -101,7 +101,7 @@ def test_every_branch_brings_the_point_there(machines: tuple[Machine, ...]) -> N
             if byte in (1, 2) and robot.BRANCHES:
                 bytes_ = [robot.configuration_offset(f, o) for f, o in zip(found, offsets[answered], strict=True)]
                 assert {b[: robot.BRANCHES] for b in bytes_} <= {(byte,) * robot.BRANCHES}
-            assert answered.all() or machine.mechanism.rods or (byte in (1, 2) and not machine.branches_meet_together)
+            assert answered.all() or (byte in (1, 2) and not machine.branches_meet_together)
 
 
 def _answers(machine: Machine, places: Array, offsets: Array, configuration: tuple[int, ...], near: Array) -> Array:

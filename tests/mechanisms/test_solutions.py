@@ -34,14 +34,13 @@ def test_the_slots_are_the_roots_of_the_closure(machines: tuple[Machine, ...]) -
         for position, rotation in zip(*machine.closure.poses(axes), strict=True):
             counts.add(compare(machine, position, rotation))
     most = 2 ** machines[0].robot.BRANCHES
-    assert counts <= set(range(1, most + 1))
-    if not machines[0].mechanism.rods:
-        assert max(counts) == most
-        assert counts == {most} or not machines[0].branches_meet_together
+    assert min(counts) >= 1
+    assert max(counts) == most or machines[0].mechanism.rods
+    assert counts == {most} or not machines[0].branches_meet_together
 
 
 def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, ...]) -> None:
-    """Positions from the middle of the machine to twice its reach: of an arm two branches answer together, or none."""
+    """Positions from the middle of the machine to twice its reach: two branches of a serial one answer together, or none."""
     counts = set()
     for machine in machines[::2]:
         axes = machine.draw(3, np.random.default_rng(32))
@@ -49,11 +48,8 @@ def test_where_the_closure_has_no_root_no_slot_answers(machines: tuple[Machine, 
         for position, rotation, scale in zip(*machine.closure.poses(axes), scales, strict=True):
             counts.add(compare(machine, scale * position, rotation))
     most = 2 ** machines[0].robot.BRANCHES
-    if machines[0].mechanism.rods:
-        assert 0 in counts
-        assert counts <= set(range(most + 1))
-    elif machines[0].branches_meet_together:
+    if machines[0].branches_meet_together:
         assert counts == ({0, most} if machines[0].has_a_reach else {most})
     else:
         assert 0 in counts
-        assert counts <= set(range(0, most + 1, 2))
+        assert counts <= set(range(0, most + 1, 1 if machines[0].mechanism.rods else 2))
