@@ -58,7 +58,7 @@ def miss(axes: Array, lateral: float, wanted: Array) -> float:
 def all_roots(wanted: Array, lateral: float, rng: np.random.Generator) -> list[Array]:
     """Every solution that Newton's method finds from many starts, in degrees within one turn."""
     found: list[Array] = []
-    for start in rng.uniform(-180, 180, (250, 6)):
+    for start in rng.uniform(-180, 180, (150, 6)):
         axes = _newton(start, lateral, wanted)
         if axes is None:
             continue

@@ -10,9 +10,6 @@ from softkin import KinematicsError, Status
 
 from tests.search.arms import LATERALS, all_roots, arm, frame, miss, posed
 
-MOST_MISSED = 0.01
-"""A scan is no proof: this share of the solutions may be missed."""
-
 
 @pytest.mark.parametrize("lateral", (0.0, *LATERALS))
 def test_the_reported_configuration_leads_back(lateral: float) -> None:
@@ -40,11 +37,12 @@ def test_right_angles_with_the_reference_at_the_same_axes(lateral: float) -> Non
     assert max(miss(a, lateral, frame(b, lateral)) for a, b in zip(found, axes, strict=True)) < 1e-10
 
 
-@pytest.mark.parametrize("lateral", (60.0, -35.0))
-def test_how_many_solutions_are_found(lateral: float) -> None:
+def test_how_many_solutions_are_found() -> None:
+    """The witness asks the same of more poses and machines, before anything is generated."""
+    lateral = 60.0
     robot, rng = arm(lateral), np.random.default_rng(3)
     total = missed = 0
-    for axes in rng.uniform(-180, 180, (12, 6)):
+    for axes in rng.uniform(-180, 180, (4, 6)):
         wanted = frame(axes, lateral)
         slots = [np.array(s.axes) for s in robot.inverse_all(posed(wanted), axes) if s.axes is not None]
         assert all(miss(a, lateral, wanted) < 1e-12 for a in slots)
@@ -52,8 +50,8 @@ def test_how_many_solutions_are_found(lateral: float) -> None:
             total += 1
             apart = [np.abs(np.exp(1j * np.radians(root)) - np.exp(1j * np.radians(a))).max() for a in slots]
             missed += min(apart, default=9.0) > 1e-5
-    assert total > 60
-    assert missed <= MOST_MISSED * total
+    assert total > 16
+    assert missed == 0
 
 
 def test_every_slot_says_its_own_configuration() -> None:
@@ -74,24 +72,21 @@ def test_without_the_offset_there_is_no_second_crossing() -> None:
     assert error.value.status is Status.UNREACHABLE
 
 
-def test_a_path_never_jumps() -> None:
-    """Small steps with the reference at the previous result, the configuration held: near the pose before, or refused."""
+def test_a_path_in_one_configuration_is_followed() -> None:
+    """Small steps with the reference at the previous result: where the path keeps its configuration, it is found again."""
     robot, rng = arm(60.0), np.random.default_rng(6)
-    start, end = rng.uniform(-120, 120, (2, 6))
-    axes = np.array(start)
-    configuration = (*robot.forward(axes)[1][:4], 0, 0, 0, 0, 0, 0)
-    answered = 0
-    for share in np.linspace(0.0, 1.0, 400):
-        wanted = frame(start + share * (end - start), 60.0)
-        try:
-            found = np.array(robot.inverse(posed(wanted), configuration, axes))
-        except KinematicsError as error:
-            assert error.status is Status.UNREACHABLE
-            break
-        assert np.abs(found - axes).max() < 25.0
-        assert miss(found, 60.0, wanted) < 1e-12
-        axes, answered = found, answered + 1
-    assert answered > 20
+    followed = 0
+    while followed < 4:
+        start = rng.uniform(-170, 170, 6)
+        path = start + np.linspace(0.0, 1.0, 200)[:, None] * rng.uniform(-50, 50, 6)
+        configurations = robot.forward_batch(path)[2][:, :4]
+        if (configurations != configurations[0]).any():
+            continue
+        axes, held = start, (*(int(b) for b in configurations[0]), 0, 0, 0, 0, 0, 0)
+        for expected in path:
+            axes = np.array(robot.inverse(posed(frame(expected, 60.0)), held, axes))
+            assert np.abs(axes - expected).max() < 1e-6
+        followed += 1
 
 
 def test_garbage_ends_in_a_status() -> None:

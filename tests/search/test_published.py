@@ -55,7 +55,8 @@ def test_beside_the_right_angle_it_is_singular() -> None:
     low, high = 0.0, 180.0
     for _ in range(80):
         axes[4] = (low + high) / 2
-        low, high = (axes[4], high) if determinant(axes, 60.0) * determinant(np.array([*axes[:4], low, 70.0]), 60.0) > 0 else (low, axes[4])
+        same = determinant(axes, 60.0) * determinant(np.array([*axes[:4], low, 70.0]), 60.0) > 0
+        low, high = (axes[4], high) if same else (low, axes[4])
     assert abs(axes[4] - 90.0) > 1.0
     assert robot.singularity(axes).is_singular
     assert arm(0.0).singularity((20.0, 30.0, -40.0, 35.0, 90.0, 70.0)).is_singular
