@@ -60,10 +60,10 @@ def _is_square_root(node: sp.Basic) -> bool:
 
 def bare(statements: Iterable[Statement]) -> tuple[Statement, ...]:
     """The statements with plain names: in a program a name is a name, whatever the solver knew of its sign."""
-    return tuple(_renamed(rewritten(s, _bare_expression), lambda name: real(name.name)) for s in statements)
+    return tuple(renamed(rewritten(s, _bare_expression), lambda name: real(name.name)) for s in statements)
 
 
-def _renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Statement:
+def renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Statement:
     """The statement with the names that it binds changed."""
     if isinstance(statement, Let):
         return replace(statement, name=name(statement.name))
@@ -71,7 +71,7 @@ def _renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> St
         determinant = None if statement.determinant is None else name(statement.determinant)
         return replace(statement, names=tuple(map(name, statement.names)), determinant=determinant)
     if isinstance(statement, Iterate):
-        step = tuple(s for s in (_renamed(s, name) for s in statement.step) if isinstance(s, Let | Solve))
+        step = tuple(s for s in (renamed(s, name) for s in statement.step) if isinstance(s, Let | Solve))
         return replace(statement, state=tuple(map(name, statement.state)), step=step)
     return replace(statement, names=tuple(map(name, statement.names))) if isinstance(statement, Call) else statement
 

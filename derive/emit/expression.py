@@ -14,7 +14,7 @@ from sympy.core.relational import Relational
 
 from derive.program import DEGREE, Atan2, NearestOnArc, NearestPeriod, Root, Select
 
-_OR, _AND, _COMPARE, _SUM, _PRODUCT, _UNARY, _ATOM = range(7)
+_OR, _AND, _COMPARE, _SUM, _PRODUCT, _UNARY, ATOM = range(7)
 
 FUNCTION_KEYS: dict[type[sp.Basic], str] = {
     sp.sin: "sin",
@@ -58,9 +58,9 @@ class ExpressionPrinter(ABC):
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
         if node in (sp.true, sp.false):
-            return self.logic("true" if node == sp.true else "false"), _ATOM
+            return self.logic("true" if node == sp.true else "false"), ATOM
         if node == DEGREE or isinstance(node, sp.Symbol):
-            return self.name(node), _ATOM
+            return self.name(node), ATOM
         if isinstance(node, sp.Number):
             return self._number(node)
         if isinstance(node, sp.Add):
@@ -74,7 +74,7 @@ class ExpressionPrinter(ABC):
         if isinstance(node, sp.Or):
             return self._joined(node, "or", _AND), _OR
         key = FUNCTION_KEYS[type(node)]
-        return self.call(key, [self._text(a, _OR) for a in node.args]), _ATOM
+        return self.call(key, [self._text(a, _OR) for a in node.args]), ATOM
 
     def _joined(self, node: sp.Basic, word: str, context: int) -> str:
         # Comparisons are parenthesised in both languages: a reader need not know their precedence.
@@ -84,7 +84,7 @@ class ExpressionPrinter(ABC):
     def _number(self, node: sp.Number) -> tuple[str, int]:
         value = float(node)
         text = self.number(abs(value))
-        return (f"-{text}", _UNARY) if value < 0 else (text, _ATOM)
+        return (f"-{text}", _UNARY) if value < 0 else (text, ATOM)
 
     def _sum(self, node: sp.Add) -> str:
         terms = sorted(node.as_ordered_terms(), key=_term_order)  # stable: among equals as SymPy orders them

@@ -12,8 +12,9 @@ from derive.emit import python_setup as setup
 from derive.emit.language import GENERATED, environment
 from derive.emit.python_layout import WIDTH, fold
 from derive.emit.python_methods import branch, carried, forwards, limits, methods, shared
-from derive.emit.python_printer import ARRAY_NAMES, literal
+from derive.emit.python_printer import ARRAY_NAMES, array_helpers_in, literal, primitives_in
 from derive.emit.python_program import Method, array_body, functions, has_loop, scalar_body
+from derive.emit.python_unrolled import array_lines, array_method, can_be_unrolled, unrolled
 from derive.kinematics import Kinematics
 from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, SINGULAR, SOLVABLE, TIE, Status
 
@@ -32,10 +33,12 @@ _FIXED = (
     "softkin/_offset.py",
     "softkin/_orientation.py",
     "softkin/_scalar.py",
+    "softkin/_solutions.py",
     "softkin/_start.py",
     "softkin/_table.py",
     "softkin/_twist.py",
     "softkin/_types.py",
+    "softkin/_unrolled/__init__.py",
     "softkin/_vectors.py",
     "softkin/py.typed",
 )
@@ -108,7 +111,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
     arrays = [*shared(kin), *forwards(kin), branch(kin), limits(kin), *carried(kin)]
     array_programs = _array_programs(kin)
     array_types = _ARRAY_TYPES + (("advanced", "initial", "settled") if any(has_loop(m.program) for m in arrays) else ())
-    programs = tuple(m.program for m in scalar) + (kin.setup,)
+    bodies = [scalar_body(m) for m in scalar]
     context = {
         **names,
         "kin": kin,
@@ -118,20 +121,32 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "array_programs": array_programs,
         "bases": _bases(kin),
         "types": _types(kin, scalar),
-        "primitives": _without(functions(programs), "abs", "select"),
+        "primitives": primitives_in(line for body in (*bodies, setup.setup_body(kin)) for line in body),
+        "is_unrolled": can_be_unrolled(kin),
         "margins": tuple(m.name for m in kin.margins),
-        "methods": [{"head": _head(m, "_"), "summary": m.summary, "body": scalar_body(m)} for m in scalar],
+        "methods": [{"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)],
     }
+    array_methods = [{"head": _array_head(m), "summary": m.summary, "body": array_body(m)} for m in arrays]
+    if can_be_unrolled(kin) and kin.branches:
+        every = array_method(kin)
+        array_methods.append({"head": _every_head(every), "summary": every.summary, "body": array_lines(kin, every)})
+        arrays.append(every)
+    helpers = array_helpers_in((line for m in array_methods for line in m["body"]), ("everywhere", "refused"))
     array_context = {
         **names,
         "array_programs": array_programs,
-        "imports": _sorted({array_programs, *array_types, *_array_functions(arrays)}),
-        "methods": [{"head": _array_head(m), "summary": m.summary, "body": array_body(m)} for m in arrays],
+        "imports": _sorted({array_programs, *array_types, *helpers, *_array_functions(arrays)}),
+        "methods": array_methods,
+        "takes_signs": can_be_unrolled(kin) and kin.branches,
     }
-    return {
+    files = {
         f"softkin/{names['module']}.py": templates.get_template("mechanism.py.j2").render(context),
         f"softkin/_array_programs/{names['module']}.py": templates.get_template("arrays.py.j2").render(array_context),
     }
+    if can_be_unrolled(kin):
+        unrolled_text = templates.get_template("unrolled.py.j2").render(**names, unrolled=unrolled(kin))
+        files |= {f"softkin/_unrolled/{names['module']}.py": unrolled_text}
+    return files
 
 
 def _array_programs(kin: Kinematics) -> str:
@@ -156,8 +171,9 @@ def _bases(kin: Kinematics) -> dict[str, str]:
 
 def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
     kinds = {m.kind for m in used if m.kind} | {a.kind for m in used for a in m.arguments}
+    lean = {"Frame", "Reals", "Rotation", "Vector"} if can_be_unrolled(kin) else set()
     bytes_ = {"ConfigurationByte"} if kin.configuration_size else set()
-    return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Axis", "Parameter", "Status"} | bytes_)
+    return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Axis", "Parameter", "Status"} | bytes_ | lean)
 
 
 def _head(method: Method, prefix: str) -> list[str]:
@@ -175,8 +191,10 @@ def _array_head(method: Method) -> list[str]:
     return fold(f"def {method.name}(self{arguments}) -> {result}:", 4)
 
 
-def _without(found: Sequence[str], *unwanted: str) -> list[str]:
-    return [f for f in found if f not in unwanted]
+def _every_head(method: Method) -> list[str]:
+    """The unrolled branches are told the signs of the slots, as any other programs, and know them."""
+    arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
+    return fold(f"def {method.name}(self{arguments}, signs: Sequence[Reals]) -> {method.kind}:", 4)
 
 
 def _sorted(found: set[str]) -> list[str]:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from keyword import iskeyword
 
 import sympy as sp
 
-from derive.emit.expression import FUNCTION_KEYS, ExpressionPrinter
+from derive.emit.expression import ATOM, FUNCTION_KEYS, ExpressionPrinter
+from derive.program import Root
 
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
-    "given", "found",
+    "given", "found", "frame", "arctan2", "sqrt", "everywhere", "refused",
 }  # fmt: skip
 """Names that a generated method uses for itself."""
 ARRAY_NAMES = {"abs": "absolute"}
@@ -33,8 +35,42 @@ def literal(value: float) -> str:
     return short if float(short) == value else repr(value)
 
 
+def primitives_in(lines: Iterable[str]) -> list[str]:
+    """The primitives and constants that statements use, in alphabetical order."""
+    words = {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", line.partition("#")[0])}
+    return sorted(words & {*FUNCTION_KEYS.values(), "DEGREE", "arctan2", "solve", "sqrt"} - {"abs", "select"})
+
+
+def array_helpers_in(lines: Iterable[str], helpers: Iterable[str]) -> set[str]:
+    """Those of some functions that statements on arrays call."""
+    return {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", line.partition("#")[0])} & set(helpers)
+
+
+def is_sum_of_squares(value: sp.Expr) -> bool:
+    """Whether a value is no negative number, not even a negative zero."""
+    return value.is_Add and all(term.is_Pow and term.exp == 2 for term in value.args)
+
+
 class ScalarPrinter(ExpressionPrinter):
-    """Plain numbers: a choice is a conditional expression, and only one arm of it is evaluated."""
+    """Plain numbers: a choice is a conditional expression, and only one arm of it is evaluated.
+
+    What is short is written out instead of called, because a call takes longer: the root of a sum of squares or of a name.
+    Of an angle, zeros lose their signs by adding 0.
+    """
+
+    def __init__(self, *, modulo_turns: bool = False) -> None:
+        """modulo_turns: whether -180 degrees are as good as 180, so that the sign of a zero sine does not matter."""
+        self.modulo_turns = modulo_turns
+
+    def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, Root):
+            (radicand,) = node.args
+            text = self.print(radicand)
+            if is_sum_of_squares(radicand):
+                return f"sqrt({text})", ATOM
+            if radicand.is_Symbol:
+                return f"(sqrt({text}) if {text} > 0.0 else 0.0)", ATOM
+        return super()._spell(node)
 
     def name(self, symbol: sp.Symbol) -> str:
         return symbol.name if symbol.name == "DEGREE" else spelled(symbol.name)
@@ -46,6 +82,9 @@ class ScalarPrinter(ExpressionPrinter):
         if key == "select":
             condition, first, second = arguments
             return f"({first} if {condition} else {second})"
+        if key == "atan2":
+            sine, cosine = arguments
+            return f"arctan2({sine}{'' if self.modulo_turns else ' + 0.0'}, {cosine} + 0.0)"
         return f"{key}({', '.join(arguments)})"
 
     def logic(self, word: str) -> str:
@@ -54,6 +93,9 @@ class ScalarPrinter(ExpressionPrinter):
 
 class ArrayPrinter(ScalarPrinter):
     """Arrays: a choice evaluates both arms, and conditions are masks."""
+
+    def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        return ExpressionPrinter._spell(self, node)
 
     def call(self, key: str, arguments: Sequence[str]) -> str:
         return f"{ARRAY_NAMES.get(key, key)}({', '.join(arguments)})"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -10,16 +10,32 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 from derive.emit import python_calls
+from derive.emit.arms import Arms, Item, in_arms
 from derive.emit.expression import FUNCTION_KEYS
 from derive.emit.python_layout import WIDTH, fold, taken_apart
 from derive.emit.python_loops import array_end, array_head, scalar_end, scalar_head, solve_lines
-from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, spelled
-from derive.program import DEGREE, Call, Iterate, Let, Program, Require, Select, Solve, Statement, expressions, symbols_of
+from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, literal, spelled
+from derive.program import (
+    DEGREE,
+    EDGE,
+    Call,
+    Iterate,
+    Let,
+    NearestPeriod,
+    Program,
+    Require,
+    Select,
+    Solve,
+    Status,
+    expressions,
+    symbols_of,
+)
 
 Shape = str | tuple["Shape", ...]
 """Names, nested as the tuples of the method's arguments and results are."""
 
 _SCALAR, _ARRAY = ScalarPrinter(), ArrayPrinter()
+_MODULO_TURNS = ScalarPrinter(modulo_turns=True)
 
 
 @dataclass(frozen=True)
@@ -49,42 +65,93 @@ class Method:
 
 def scalar_body(method: Method) -> list[str]:
     """The body on plain numbers: the first condition that does not hold returns its status."""
-    lines = [*_unpacked(method), *_constants(method, "self._constants")]
-    for statement, same in _grouped(method.program.body):
-        if isinstance(statement, Iterate):
-            lines += [*scalar_head(statement, _SCALAR), *_step(statement, _SCALAR)]
-            lines += scalar_end(statement, conjunction([statement.done]), _SCALAR)
-        elif isinstance(statement, Call):
-            lines += python_calls.scalar_lines(statement, _SCALAR)
-        elif isinstance(statement, Require):
-            lines += [*_note(statement.note), *fold(f"if not ({conjunction(r.condition for r in same)}):")]
-            lines.append(f"    return Status.{statement.otherwise.name}")
-        else:
-            lines += binding_lines(statement, _SCALAR)
+    lines = [*unpacked(method), *_constants(method, "self._constants")]
+    lines += statement_lines(method.program, lambda status: f"Status.{status.name}", _SCALAR)
     return [*lines, *fold(f"return {_values(method, _SCALAR) or 'Status.OK'}")]
+
+
+def statement_lines(program: Program, refusal: Callable[[Status], str], printer: ScalarPrinter) -> list[str]:
+    """The statements of a program on plain numbers; `refusal` is what it returns where a condition does not hold."""
+    lines: list[str] = []
+    for item, same in grouped(in_arms(program.body, [o.value for o in program.outputs])):
+        if isinstance(item, Require):
+            lines += [*_note(item.note), *fold(f"if not ({conjunction(r.condition for r in same)}):")]
+            lines.append(f"    return {refusal(item.otherwise)}")
+        elif isinstance(item, Iterate):
+            lines += [*scalar_head(item, printer), *_step(item, printer)]
+            lines += scalar_end(item, conjunction([item.done]), printer)
+        elif isinstance(item, Call):
+            lines += python_calls.scalar_lines(item, printer)
+        else:
+            lines += _item_lines(item, printer)
+    return lines
+
+
+def _item_lines(item: Item, printer: ScalarPrinter) -> list[str]:
+    """A binding, or a choice between two sides that bind the same."""
+    if isinstance(item, Arms):
+        head = fold(f"if {conjunction([item.condition])}:")
+        return [*head, *_side(item.holds, printer), "else:", *_side(item.fails, printer)]
+    if isinstance(item, Let) and isinstance(item.value, NearestPeriod):
+        return _turn_lines(item, item.value, printer)
+    assert isinstance(item, Let | Solve)
+    return binding_lines(item, printer)
+
+
+def _side(items: Sequence[Item], printer: ScalarPrinter) -> list[str]:
+    return [f"    {line}" for item in items for line in _item_lines(item, printer)]
+
+
+def _turn_lines(let: Let, value: NearestPeriod, printer: ScalarPrinter) -> list[str]:
+    """A value that is nearly always in its interval: asked first, because a call takes longer."""
+    name, centre = spelled(let.name.name), printer.print(value.args[1])
+    low, high = (literal(side * 180.0 - float(EDGE)) for side in (-1, 1))
+    away = name if value.args[1] == 0 else f"{name} - {centre}" if value.args[1].is_Symbol else f"{name} - ({centre})"
+    return [
+        *let_lines(Let(let.name, value.args[0], let.note), _MODULO_TURNS),
+        f"if not {low} <= {away} < {high}:",
+        f"    {name} = nearest_period({name}, {centre})",
+    ]
 
 
 def array_body(method: Method) -> list[str]:
     """The body on arrays: every statement for all rows, a row's status is its first condition that does not hold."""
-    lines = [*_unpacked(method), *_constants(method, "self.constants")]
-    if not method.is_shared:
-        first = method.arguments[0]
-        lines.append(f"status = passed({first.name}{'[0]' if first.kind == 'Rotation' else ''})")
-    for statement, same in _grouped(method.program.body):
-        if isinstance(statement, Iterate):
-            lines += [*array_head(statement, _ARRAY), *_step(statement, _ARRAY), *array_end(statement, _ARRAY)]
-        elif isinstance(statement, Call):
-            lines += python_calls.array_lines(statement, _ARRAY)
-        elif isinstance(statement, Require):
-            lines += _note(statement.note)
-            for condition in (r.condition for r in same):
-                lines += fold(f"require(status, {_ARRAY.print(condition)}, Status.{statement.otherwise.name})")
-        else:
-            lines += binding_lines(statement, _ARRAY)
+    lines = array_statements(method)
     values = _values(method, _ARRAY)
     if method.is_shared:
         return [*lines, *fold(f"return {values}")]
     return [*lines, *fold(f"return {values}, status" if values else "return status")]
+
+
+def array_statements(method: Method) -> list[str]:
+    """The same without the return."""
+    lines = [*unpacked(method), *_constants(method, "self.constants")]
+    if not method.is_shared:
+        first = method.arguments[0]
+        lines.append(f"status = passed({first.name}{'[0]' if first.kind == 'Rotation' else ''})")
+    program = method.program
+    for item, same in grouped(in_arms(program.body, [o.value for o in program.outputs])):
+        if isinstance(item, Iterate):
+            lines += [*array_head(item, _ARRAY), *_step(item, _ARRAY), *array_end(item, _ARRAY)]
+        elif isinstance(item, Call):
+            lines += python_calls.array_lines(item, _ARRAY)
+        elif isinstance(item, Require):
+            lines += _note(item.note)
+            for condition in (r.condition for r in same):
+                lines += fold(f"require(status, {_ARRAY.print(condition)}, Status.{item.otherwise.name})")
+        else:
+            lines += _array_item_lines(item)
+    return lines
+
+
+def _array_item_lines(item: Item) -> list[str]:
+    """A binding, or a choice: where all rows are on its first side, nothing of the other is computed."""
+    if isinstance(item, Arms):
+        holds = [f"    {line}" for inner in item.holds for line in _array_item_lines(inner)]
+        flat = [f"    {line}" for let in item.flat for line in let_lines(let, _ARRAY)]
+        return [*fold(f"if everywhere({_ARRAY.print(item.condition)}):"), *holds, "else:", *flat]
+    assert isinstance(item, Let | Solve)
+    return binding_lines(item, _ARRAY)
 
 
 def functions(programs: Sequence[Program]) -> list[str]:
@@ -143,10 +210,10 @@ def _note(note: str) -> list[str]:
     return [f"# {note}"] if note else []
 
 
-def _grouped(body: tuple[Statement, ...]) -> Iterator[tuple[Statement, tuple[Require, ...]]]:
+def grouped(body: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:
     """Statements in order; conditions that follow each other with the same outcome and note come together."""
 
-    def key(indexed: tuple[int, Statement]) -> tuple[object, ...]:
+    def key(indexed: tuple[int, Item]) -> tuple[object, ...]:
         index, statement = indexed
         return (statement.otherwise.name, statement.note) if isinstance(statement, Require) else (index,)
 
@@ -155,7 +222,7 @@ def _grouped(body: tuple[Statement, ...]) -> Iterator[tuple[Statement, tuple[Req
         yield statements[0], tuple(s for s in statements if isinstance(s, Require))
 
 
-def _unpacked(method: Method) -> list[str]:
+def unpacked(method: Method) -> list[str]:
     """The arguments by the names that the program reads; what it does not read is `_`."""
     read = _read(method.program)
     lines: list[str] = []
@@ -189,9 +256,14 @@ def names(shape: Shape) -> Iterator[str]:
 
 
 def _constants(method: Method, owner: str) -> list[str]:
-    given = {name for argument in method.arguments for name in names(argument.shape)}
-    constants = sorted(_read(method.program) - given)
+    constants = constants_of(method)
     return [f"k = {owner}", *(f"{spelled(c)} = k.{c}" for c in constants)] if constants else []
+
+
+def constants_of(method: Method) -> list[str]:
+    """What a method reads besides its arguments, in alphabetical order."""
+    given = {name for argument in method.arguments for name in names(argument.shape)}
+    return sorted(_read(method.program) - given)
 
 
 def _values(method: Method, printer: ScalarPrinter) -> str:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from derive.emit.python_layout import fold
-from derive.emit.python_printer import ScalarPrinter, spelled
+from derive.emit.python_printer import ScalarPrinter, literal, spelled
 from derive.emit.python_program import binding_lines, conjunction
 from derive.kinematics import Kinematics
 from derive.mechanism import Parameter, Role
-from derive.program import Call, Iterate, Require
+from derive.program import UNLIMITED, Call, Iterate, Require
 
 _PRINTER = ScalarPrinter()
 _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
@@ -44,6 +44,21 @@ def setup_body(kin: Kinematics) -> list[str]:
 def constants(kin: Kinematics) -> list[str]:
     """The names of the constants."""
     return [spelled(output.name) for output in kin.setup.outputs]
+
+
+def tested_limits(kin: Kinematics) -> list[str]:
+    """The unrolled functions; where limits are not tested, they are nowhere."""
+    bounds = [(name, -1) for name in constants(kin) if name.startswith("lowest_")]
+    bounds += [(name, 1) for name in constants(kin) if name.startswith("highest_")]
+    values = ", ".join(f"{name}={literal(side * float(UNLIMITED))}" for name, side in bounds)
+    if not bounds:
+        return ["self._unrolled = unrolled(self._constants)"]
+    return [
+        "tested = self._constants",
+        "if not self.checks_limits:",
+        *fold(f"tested = tested._replace({values})", 4),
+        "self._unrolled = unrolled(tested)",
+    ]
 
 
 def _refusal(statement: Require, inputs: list[str]) -> list[str]:

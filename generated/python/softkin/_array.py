@@ -15,8 +15,8 @@ from softkin._types import Status
 
 __all__ = [
     "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Vector",
-    "StartedPrograms", "absolute", "advanced", "atan2", "cos", "initial", "nearest_on_arc", "nearest_period", "passed",
-    "require", "root", "select", "settled", "sin", "solve",
+    "StartedPrograms", "absolute", "advanced", "atan2", "cos", "everywhere", "initial", "nearest_on_arc", "nearest_period", "passed",
+    "refused", "require", "root", "select", "settled", "sin", "solve",
 ]  # fmt: skip
 
 Array: TypeAlias = NDArray[np.float64]
@@ -45,6 +45,12 @@ class Programs(ABC):
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals]
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses. signs: of the branches, slot by slot."""
+        return tuple([self.branch(position, rotation, slot, turns, reference) for slot in signs])
 
     @abstractmethod
     def limits(self, axes: Reals) -> Codes:
@@ -77,6 +83,17 @@ def passed(values: tuple[Real, ...]) -> Codes:
 def require(status: Codes, condition: Truth, otherwise: Status) -> None:
     """Give the rows where the condition does not hold their status, unless they have one already."""
     status[np.logical_not(condition) & (status == Status.OK)] = otherwise
+
+
+def everywhere(condition: Truth) -> bool:
+    """Whether a condition holds in all rows."""
+    return bool(np.all(condition))
+
+
+def refused(status: Codes, refusal: Real) -> Codes:
+    """The statuses of a slot: those of all slots, else its own, which come as numbers."""
+    codes: Codes = np.where(status == Status.OK, refusal, status).astype(np.uint8)
+    return codes
 
 
 def initial(*values: Real) -> Reals:

@@ -25,6 +25,7 @@ _UNTRIED = 255
 
 Bytes: TypeAlias = NDArray[np.int8]
 Integers: TypeAlias = NDArray[np.int64]
+_Rows: TypeAlias = slice | NDArray[np.intp]
 _Poses: TypeAlias = tuple[tuple[Vector, Rotation, Reals], Codes]
 
 
@@ -87,10 +88,7 @@ def inverse(
     near = numbers(np.zeros(width) if references is None else references, count, (width,), "references")
     branches = codes[:, robot._branch_bytes]
     parts = [points, near, codes[:, robot._period_bytes].astype(np.float64)]
-    if robot.READS_ROTATION:
-        if rotations is None:
-            raise KinematicsError(Status.BAD_INPUT, f"{robot.NAME}: rotations are needed: this mechanism reads them")
-        parts.append(numbers(rotations, count, (3, 3), "rotations").reshape(count, 9))
+    parts += _cells(robot, rotations, count)
     axes, statuses = np.empty((count, width)), np.empty(count, np.uint8)
     for rows in _chunks(count):
         table = np.ascontiguousarray(np.concatenate([part[rows] for part in parts], axis=1).T)
@@ -103,28 +101,84 @@ def inverse(
     return axes, statuses
 
 
+def inverse_all(
+    robot: Mechanism,
+    programs: Programs,
+    positions: ArrayLike,
+    rotations: ArrayLike | None,
+    references: ArrayLike | None,
+) -> tuple[Array, Codes]:
+    """Every slot of every row."""
+    points = numbers(positions, None, (3,), "positions")
+    signs = [s for _, s in slots((AUTOMATIC,) * robot.BRANCHES)]
+    count, width = len(points), len(robot.AXES)
+    near = numbers(np.zeros(width) if references is None else references, count, (width,), "references")
+    parts = [points, near, np.zeros((count, len(robot.PERIOD_AXES))), *_cells(robot, rotations, count)]
+    axes, statuses = np.empty((count, len(signs), width)), np.empty((count, len(signs)), np.uint8)
+    for rows in _chunks(count):
+        table = np.ascontiguousarray(np.concatenate([part[rows] for part in parts], axis=1).T)
+        with np.errstate(all="ignore"):
+            for slot, (found, status) in enumerate(programs.every_branch(*_inputs(robot, table), signs)):
+                if robot.checks_limits:
+                    status = np.where(status == Status.OK, programs.limits(found), status)
+                _write(axes[rows, slot], found, status != Status.OK)
+                statuses[rows, slot] = status
+    return axes, statuses
+
+
+def _cells(robot: Mechanism, rotations: ArrayLike | None, count: int) -> list[Array]:
+    """The rotations by rows, if they are read."""
+    if not robot.READS_ROTATION:
+        return []
+    if rotations is None:
+        raise KinematicsError(Status.BAD_INPUT, f"{robot.NAME}: rotations are needed: this mechanism reads them")
+    return [numbers(rotations, count, (3, 3), "rotations").reshape(count, 9)]
+
+
 def _nearest(
     robot: Mechanism, programs: Programs, table: Array, branches: Integers, are_bytes: NDArray[np.bool_]
 ) -> tuple[Array, Codes]:
     """The axes of every row on its slot, or on the nearest of those that its bytes leave open."""
-    found = np.full((len(robot.AXES), len(branches)), np.nan)
-    status = np.where(are_bytes, _UNTRIED, Status.BAD_INPUT).astype(np.uint8)
-    least = np.full(len(branches), np.inf)
-    for slot, signs in slots((AUTOMATIC,) * robot.BRANCHES):
-        rows = _rows(are_bytes & _may_be(branches, slot))
+    best = _Best(robot, len(branches), are_bytes)
+    is_open = np.any((branches == AUTOMATIC) | (branches == COINCIDE), axis=1)
+    every = slots((AUTOMATIC,) * robot.BRANCHES)
+    rows = _rows(are_bytes & is_open)
+    inputs = _inputs(robot, table[:, rows])
+    if inputs[0][0].size:
+        tried = programs.every_branch(*inputs, [signs for _, signs in every])
+        for (slot, _), (axes, outcome) in zip(every, tried, strict=True):
+            best.take(rows, axes, outcome, inputs[3], _may_be(branches[rows], slot))
+    for slot, signs in every:
+        rows = _rows(are_bytes & ~is_open & _may_be(branches, slot))
         position, rotation, turns, reference = _inputs(robot, table[:, rows])
-        if position[0].size == 0:
-            continue
-        axes, outcome = programs.branch(position, rotation, signs, turns, reference)
-        distance = sum(((axes[i] - reference[i]) ** 2 for i in robot.DISTANCE_AXES), np.zeros(len(outcome)))
-        is_number = np.logical_and.reduce([np.abs(reference[i]) <= 1e9 for i in robot.DISTANCE_AXES])
+        if position[0].size:
+            axes, outcome = programs.branch(position, rotation, signs, turns, reference)
+            best.take(rows, axes, outcome, reference, np.ones(len(outcome), np.bool_))
+    return best.axes, best.status
+
+
+class _Best:
+    """The axes of every row on the nearest slot so far, and its status: that of its first slot where there are none."""
+
+    def __init__(self, robot: Mechanism, count: int, are_bytes: NDArray[np.bool_]) -> None:
+        self.counted = robot.DISTANCE_AXES
+        self.axes = np.full((len(robot.AXES), count), np.nan)
+        self.status = np.where(are_bytes, _UNTRIED, Status.BAD_INPUT).astype(np.uint8)
+        self.least = np.full(count, np.inf)
+
+    def take(
+        self, rows: _Rows, axes: Reals, outcome: Codes, reference: tuple[Array, ...], may_be: NDArray[np.bool_]
+    ) -> None:
+        """Try a slot for some rows, of which it may be that of `may_be`."""
+        distance = sum(((axes[i] - reference[i]) ** 2 for i in self.counted), np.zeros(len(outcome)))
+        is_number = np.logical_and.reduce([np.abs(reference[i]) <= 1e9 for i in self.counted])
         distance = np.where(is_number, distance, 0.0)
-        is_better = (outcome == Status.OK) & ((status[rows] != Status.OK) | (distance < least[rows] - TIE))
-        status[rows] = np.where(is_better | (status[rows] == _UNTRIED), outcome, status[rows])
-        least[rows] = np.where(is_better, distance, least[rows])
+        status = self.status[rows]
+        is_better = may_be & (outcome == Status.OK) & ((status != Status.OK) | (distance < self.least[rows] - TIE))
+        self.status[rows] = np.where(is_better | (may_be & (status == _UNTRIED)), outcome, status)
+        self.least[rows] = np.where(is_better, distance, self.least[rows])
         for i, value in enumerate(axes):
-            found[i, rows] = np.where(is_better, value, found[i, rows])
-    return found, status
+            self.axes[i, rows] = np.where(is_better, value, self.axes[i, rows])
 
 
 def _inputs(robot: Mechanism, table: Array) -> tuple[tuple[Array, Array, Array], Rotation, Reals, tuple[Array, ...]]:
@@ -154,7 +208,7 @@ def _may_be(branches: Integers, slot: Configuration) -> NDArray[np.bool_]:
     return chosen
 
 
-def _rows(chosen: NDArray[np.bool_]) -> slice | NDArray[np.intp]:
+def _rows(chosen: NDArray[np.bool_]) -> _Rows:
     """Chosen rows as an index; all of them as a slice, which copies nothing."""
     return slice(None) if chosen.all() else np.flatnonzero(chosen)
 

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import nan
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NoReturn, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias
 
-from softkin._configuration import TIE, branch_byte, period, slots, squared_distance
+from softkin._configuration import AUTOMATIC, TIE, branch_byte, period, slots, squared_distance
 from softkin._input import bytes_of, parameter_value, position_of, reals, rotation_of, unusable
+from softkin._solutions import Solutions
 from softkin._types import (
     Axis,
     Configuration,
@@ -43,10 +44,21 @@ TWIST = ("x", "y", "z", "turn x", "turn y", "turn z")
 """The rows of a twist: along and about the axes of the machine."""
 _IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
+_STATUSES = tuple(Status)
+
 Pose: TypeAlias = tuple[Vector, Rotation, Reals]
 Image: TypeAlias = tuple[Rotation, Vector, Vector]
 _OneBranch: TypeAlias = Callable[[Reals], Reals | Status]
 """The axes by the signs of the branches."""
+
+
+class Unrolled(NamedTuple):
+    """The functions of a machine whose inverse is one straight line for all branches."""
+
+    every_branch: Callable[[Vector, Rotation, Reals], tuple[Reals | float, ...]]
+    """Every slot: its axes, or the number of its status."""
+    branches: Callable[[Frame, Reals], tuple[Reals | None, ...]]
+    branch: Callable[[Frame, Reals, Reals], Reals | None]
 
 
 class Mechanism(ABC):
@@ -153,24 +165,29 @@ class Mechanism(ABC):
             self._fail("inverse", axes, position=position, rotation=rows, reference=near)
         return self._limited("inverse", axes)
 
-    def inverse_all(self, frame: FrameLike, reference: Numbers | None = None) -> tuple[Solution, ...]:
+    def inverse_all(self, frame: FrameLike, reference: Numbers | None = None) -> Sequence[Solution]:
         """Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
 
         Periods are the nearest to the reference. No slot is left out: one without axes has the status instead,
-        limits included. Raises BAD_INPUT only for what has not the form of a frame.
+        limits included. Raises BAD_INPUT only for what has not the form of a frame. The result is as a tuple of them.
         """
         position, rows = self._pose(frame)
-        near = self._near(reference)
-        open_turns = (0.0,) * len(self.PERIOD_AXES)
-        found = []
-        for branches, signs in slots((0,) * self.BRANCHES):
-            axes = self._branch(position, rows, signs, open_turns, near)
-            status = axes if isinstance(axes, Status) else self._limit_status(axes)
-            if isinstance(axes, Status) or status is not Status.OK:
-                found.append(Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, status))
-            else:
-                found.append(Solution(self._joined(branches, self._periods(axes)), axes, status))
-        return tuple(found)
+        return Solutions(self._every_branch(position, rows, self._near(reference)), self._solution)
+
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None where it does not reach.
+
+        The input is trusted: plain tuples of floats, with a rotation that is one. Axes are one of their values, a turn
+        more or less is not chosen, and limits are not tested.
+        """
+        return self._directions(frame, (0.0,) * len(self.AXES) if reference is None else reference)
+
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops, with input and axes as `branches` has them.
+
+        signs: 1.0 for byte 1 of a branch, -1.0 for byte 2.
+        """
+        return self._direction(frame, signs, (0.0,) * len(self.AXES) if reference is None else reference)
 
     def jacobian(self, axes: Numbers) -> Matrix:
         """The Jacobian: rows as `JACOBIAN_ROWS`, one column an axis, per radian for an axis in degrees."""
@@ -223,6 +240,41 @@ class Mechanism(ABC):
         from softkin import _batch
 
         return _batch.inverse(self, self._array_programs(), positions, rotations, configurations, references)
+
+    def inverse_all_batch(
+        self, positions: ArrayLike, rotations: ArrayLike | None = None, references: ArrayLike | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+        """Every branch of N rows → axes (N, slots, n), statuses (N, slots), in the slots of `inverse_all`.
+
+        The input is that of `inverse_batch`. A slot whose status is not OK holds NaN. Raises BAD_INPUT for a wrong shape.
+        """
+        from softkin import _batch
+
+        return _batch.inverse_all(self, self._array_programs(), positions, rotations, references)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        """Every slot: its axes, or the number of its status."""
+        open_turns = (0.0,) * len(self.PERIOD_AXES)
+        found: list[Reals | float] = []
+        for _, signs in slots((AUTOMATIC,) * self.BRANCHES):
+            axes = self._branch(position, rotation, signs, open_turns, reference)
+            status = axes if isinstance(axes, Status) else self._limit_status(axes)
+            found.append(axes if status is Status.OK and not isinstance(axes, Status) else float(status))
+        return tuple(found)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return tuple([self._direction(frame, signs, reference) for _, signs in slots((AUTOMATIC,) * self.BRANCHES)])
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        axes = self._branch(*frame, signs, (0.0,) * len(self.PERIOD_AXES), reference)
+        return None if isinstance(axes, Status) else axes
+
+    def _solution(self, slot: int, found: Reals | float) -> Solution:
+        """A slot with its configuration."""
+        branches, _ = slots((AUTOMATIC,) * self.BRANCHES)[slot]
+        if isinstance(found, tuple):
+            return Solution(self._joined(branches, self._periods(found)), found, Status.OK)
+        return Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, _STATUSES[int(found)])
 
     def _pose(self, frame: FrameLike) -> tuple[Vector, Rotation]:
         """Position and rotation; a rotation that nobody reads is not looked at."""

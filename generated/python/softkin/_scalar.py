@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
+from math import atan2 as arctan2
 from math import cos, floor, pi, sin, sqrt
 
-__all__ = ["DEGREE", "atan2", "cos", "nearest_on_arc", "nearest_period", "root", "sin", "solve"]
+__all__ = [
+    "DEGREE", "arctan2", "atan2", "cos", "nearest_on_arc", "nearest_period", "root", "sin", "solve", "sqrt",
+]  # fmt: skip
 
 DEGREE = pi / 180.0
 """One degree in radians."""
@@ -22,7 +24,7 @@ def root(x: float) -> float:
 
 def atan2(y: float, x: float) -> float:
     """The angle of (x, y) in radians, in (-pi, pi]; 0 for (0, 0). Zeros have no sign."""
-    return math.atan2(y + 0.0, x + 0.0)
+    return arctan2(y + 0.0, x + 0.0)
 
 
 def nearest_period(value: float, centre: float) -> float:

@@ -51,7 +51,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Mechanism, Pose
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin, solve
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, solve, sqrt
 from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
 
 if TYPE_CHECKING:
@@ -439,7 +439,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = a1 + a2 + d4  # a length of the machine
         searched = 1.0 if abs(j6_offset_x) > 0.0 else 0.0  # whether to search along A6
-        effective_q3_closed = root(a3*a3 + d4*d4)  # effective length that the angle turns
+        effective_q3_closed = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
         # q3: law of cosines in the x_from_q1² + z_from_q1² equation
         swing_scale_q3_closed = 2.0*a2*effective_q3_closed
         return Constants(
@@ -524,14 +524,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
         r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
         y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
         y = y_at_q6 + d6*r23_at_q5
-        r33_at_q4 = cos_q23*cos_q4
-        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
-        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
-        z = z_at_q6 + d6*r33_at_q5
         r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
         q6 = DEGREE*(axis_a6 - offset_a6)
         sin_q6 = sin(q6)
@@ -541,24 +533,37 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
         r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
         r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
         r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
-        r32_at_q4 = cos_q23*sin_q4
-        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
-        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
-        wrist_x_closed = x - d6*r13_at_q5  # the point that the last joints turn about
-        wrist_y_closed = y - d6*r23_at_q5
-        margin_shoulder_closed = (wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)/machine_scale
         # the point that the last joints turn about
         wrist_x_tried = x + j6_offset_x*r12_at_q6*sin_q6 - d6*r13_at_q5 - j6_offset_x*r11_at_q6*cos_q6
         wrist_y_tried = y + j6_offset_x*r22_at_q6*sin_q6 - d6*r23_at_q5 - j6_offset_x*r21_at_q6*cos_q6
         margin_shoulder_tried = (wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)/machine_scale
-        branch_shoulder = margin_shoulder_tried if searched > 0.5 else margin_shoulder_closed
-        sin_q3_closed = sin(q3)
-        cos_q3_closed = cos(q3)
-        margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_closed
-        sin_q3 = sin(q3)
-        cos_q3 = cos(q3)
-        branch_elbow = (a3*sin_q3 + d4*cos_q3)/machine_scale if searched > 0.5 else margin_elbow_closed
-        branch_wrist = sin_q4 if searched > 0.5 else cos_q5
+        if searched > 0.5:
+            branch_shoulder = margin_shoulder_tried
+            sin_q3 = sin(q3)
+            cos_q3 = cos(q3)
+            branch_elbow = (a3*sin_q3 + d4*cos_q3)/machine_scale
+            branch_wrist = sin_q4
+        else:
+            wrist_x_closed = x - d6*r13_at_q5  # the point that the last joints turn about
+            wrist_y_closed = y - d6*r23_at_q5
+            margin_shoulder_closed = (wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)/machine_scale
+            branch_shoulder = margin_shoulder_closed
+            sin_q3_closed = sin(q3)
+            cos_q3_closed = cos(q3)
+            margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_closed
+            branch_elbow = margin_elbow_closed
+            branch_wrist = cos_q5
+        r33_at_q4 = cos_q23*cos_q4
+        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2*cos_q2
+        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
+        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
+        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
+        z = z_at_q6 + d6*r33_at_q5
+        r32_at_q4 = cos_q23*sin_q4
+        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
+        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
         # of the Jacobian, its positions in lengths of the machine
         (determinant,) = solve(
             (
@@ -595,7 +600,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
                 1.0
                 if margin_shoulder_tried >= 0.0
                 else -1.0
-            )*(1.0 if sin_q4 >= 0.0 else -1.0)*determinant*machine_scale*machine_scale/(root(a3*a3 + d4*d4)*a2)
+            )*(1.0 if sin_q4 >= 0.0 else -1.0)*determinant*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
             if searched > 0.5
             else 1.0
         )
@@ -726,22 +731,20 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
         wrist_y_closed = y - d6*r23
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         # q1: of the point from its axis
-        distance_q1_closed = root(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
-        along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
-        length_q1_closed = distance_q1_closed if distance_q1_closed > 1e-11*machine_scale else 1.0
-        # its reference where it is free
-        cos_q1_closed = along_q1_closed/length_q1_closed if distance_q1_closed > 1e-11*machine_scale else cos(free_a1)
-        across_q1_closed = sigma_shoulder*wrist_y_closed
-        sin_q1_closed = (
-            across_q1_closed/length_q1_closed
-            if distance_q1_closed > 1e-11*machine_scale
-            else sin(free_a1)
-        )
+        distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
+        if distance_q1_closed > 1e-11*machine_scale:
+            along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
+            cos_q1_closed = along_q1_closed/distance_q1_closed  # its reference where it is free
+            across_q1_closed = sigma_shoulder*wrist_y_closed
+            sin_q1_closed = across_q1_closed/distance_q1_closed
+        else:
+            cos_q1_closed = cos(free_a1)  # its reference where it is free
+            sin_q1_closed = sin(free_a1)
         # what the unknown links must span
         wrist_x_from_q1_closed = wrist_x_closed*cos_q1_closed + wrist_y_closed*sin_q1_closed - a1
         wrist_z_closed = z - d6*r33
         wrist_z_from_q1_closed = wrist_z_closed - d1  # what the unknown links must span
-        reach_closed = root(
+        reach_closed = sqrt(
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
         # kept as a product
@@ -770,7 +773,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
             wrist_x_tried = x + j6_offset_x*r12*sin_q6_tried - d6*r13 - j6_offset_x*r11*cos_q6_tried
             wrist_y_tried = y + j6_offset_x*r22*sin_q6_tried - d6*r23 - j6_offset_x*r21*cos_q6_tried
             # q1: of the point from its axis
-            distance_q1_tried = root(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
+            distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
             along_q1_tried = sigma_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
             length_q1_tried = distance_q1_tried if distance_q1_tried > 1e-11*machine_scale else 1.0
             # its reference where it is free
@@ -783,7 +786,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
             r23_from_q1_tried = r23*cos_q1_tried - r13*sin_q1_tried
             r21_from_q1_before_q6_tried = r21_from_q1_tried*cos_q6_tried - r22_from_q1_tried*sin_q6_tried
             # q5: direction and distance of a point
-            radius_q5_tried = root(
+            radius_q5_tried = sqrt(
                 r21_from_q1_before_q6_tried*r21_from_q1_before_q6_tried + r23_from_q1_tried*r23_from_q1_tried
             )
             q5_radius_of_q4_tried = radius_q5_tried*sigma_wrist
@@ -808,11 +811,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
             )
             wrist_z_tried = z + j6_offset_x*r32*sin_q6_tried - d6*r33 - j6_offset_x*r31*cos_q6_tried
             z_from_q1_of_q2_tried = wrist_z_tried + d4*sin_q23_tried - d1 - a3*r33_from_q1_before_q456_tried
-            reach_tried = root(x_from_q1_of_q2_tried*x_from_q1_of_q2_tried + z_from_q1_of_q2_tried*z_from_q1_of_q2_tried)
+            reach_tried = sqrt(x_from_q1_of_q2_tried*x_from_q1_of_q2_tried + z_from_q1_of_q2_tried*z_from_q1_of_q2_tried)
             along_q2_tried = a2*z_from_q1_of_q2_tried  # q2: linear pair in the x_from_q1 and z_from_q1 equations
             across_q2_tried = a2*x_from_q1_of_q2_tried
             length_q2_tried = (
-                root(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried)
+                sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried)
                 if (reach_tried > 1e-11*machine_scale) and (
                     across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0
                 )
@@ -936,81 +939,110 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
         # no root in this branch
         if not ((accepted > 0.5) or (searched < 0.5)):
             return Status.UNREACHABLE
-        cos_q1 = cos_q1_tried if searched > 0.5 else cos_q1_closed
-        sin_q1 = sin_q1_tried if searched > 0.5 else sin_q1_closed
+        if searched > 0.5:
+            cos_q1 = cos_q1_tried
+            sin_q1 = sin_q1_tried
+            cos_q2 = cos_q2_tried
+            sin_q2 = sin_q2_tried
+            cos_q3 = cos_q3_tried
+            sin_q3 = sin_q3_tried
+            cos_q4 = r22_from_q1_before_q6_tried
+            sin_q4 = q5_radius_of_q4_tried
+            cos_q5 = cos_q5_tried
+            sin_q5 = sin_q5_tried
+            cos_q6 = cos_q6_tried
+            sin_q6 = sin_q6_tried
+        else:
+            cos_swing_q3_closed = (
+                (reach_closed*reach_closed - a2*a2 - effective_q3_closed*effective_q3_closed)/swing_scale_q3_closed
+            )
+            sin_swing_q3_closed = (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
+            cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
+            sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
+            if reach_closed > 1e-11*machine_scale:
+                arm_along_q2_closed = a3*sin_q3_closed + d4*cos_q3_closed
+                arm_across_q2_closed = a2 + a3*cos_q3_closed - d4*sin_q3_closed
+                # q2: linear pair in the x_from_q1 and z_from_q1 equations
+                along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
+                across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
+                length_q2_closed = (
+                    sqrt(across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed)
+                    if across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed > 0.0
+                    else 1.0
+                )
+                cos_q2_closed = along_q2_closed/length_q2_closed  # its reference where it is free
+                sin_q2_closed = across_q2_closed/length_q2_closed
+            else:
+                cos_q2_closed = cos(free_a2)  # its reference where it is free
+                sin_q2_closed = sin(free_a2)
+            r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
+            sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
+            cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
+            r33_from_q123_closed = r33*cos_q23_closed + r13_from_q1_closed*sin_q23_closed
+            r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
+            # q4: direction and distance of a point
+            radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
+            if radius_q4_closed > 1e-11:
+                along_q4_closed = r33_from_q123_closed*sigma_wrist  # q4: polar angle in the r33 and r23 equations
+                cos_q4_closed = along_q4_closed/radius_q4_closed  # its reference where it is free
+                across_q4_closed = -r23_from_q1_closed*sigma_wrist
+                sin_q4_closed = across_q4_closed/radius_q4_closed
+            else:
+                free_a4 = (ref_a4 - offset_a4)*DEGREE
+                cos_q4_closed = cos(free_a4)  # its reference where it is free
+                sin_q4_closed = sin(free_a4)
+            cos_q1 = cos_q1_closed
+            sin_q1 = sin_q1_closed
+            cos_q2 = cos_q2_closed
+            sin_q2 = sin_q2_closed
+            cos_q3 = cos_q3_closed
+            sin_q3 = sin_q3_closed
+            cos_q4 = cos_q4_closed
+            sin_q4 = sin_q4_closed
+            q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
+            cos_q5 = q4_radius_of_q5_closed
+            r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
+            sin_q5 = r13_from_q123_closed
+            r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
+            r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
+            r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
+            r22_from_q1234_closed = r22_from_q1_closed*cos_q4_closed + r32_from_q123_closed*sin_q4_closed
+            cos_q6 = r22_from_q1234_closed
+            r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
+            r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
+            r31_from_q123_closed = r31*cos_q23_closed + r11_from_q1_closed*sin_q23_closed
+            r21_from_q1234_closed = r21_from_q1_closed*cos_q4_closed + r31_from_q123_closed*sin_q4_closed
+            sin_q6 = r21_from_q1234_closed
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
-        cos_swing_q3_closed = (
-            (reach_closed*reach_closed - a2*a2 - effective_q3_closed*effective_q3_closed)/swing_scale_q3_closed
-        )
-        sin_swing_q3_closed = root(sine_square_q3_closed)*sigma_elbow
-        cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
-        sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
-        arm_along_q2_closed = a3*sin_q3_closed + d4*cos_q3_closed
-        arm_across_q2_closed = a2 + a3*cos_q3_closed - d4*sin_q3_closed
-        # q2: linear pair in the x_from_q1 and z_from_q1 equations
-        along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
-        across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
-        length_q2_closed = (
-            root(across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed)
-            if (reach_closed > 1e-11*machine_scale) and (
-                across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed > 0.0
-            )
-            else 1.0
-        )
-        # its reference where it is free
-        cos_q2_closed = along_q2_closed/length_q2_closed if reach_closed > 1e-11*machine_scale else cos(free_a2)
-        cos_q2 = cos_q2_tried if searched > 0.5 else cos_q2_closed
-        sin_q2_closed = across_q2_closed/length_q2_closed if reach_closed > 1e-11*machine_scale else sin(free_a2)
-        sin_q2 = sin_q2_tried if searched > 0.5 else sin_q2_closed
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
-        cos_q3 = cos_q3_tried if searched > 0.5 else cos_q3_closed
-        sin_q3 = sin_q3_tried if searched > 0.5 else sin_q3_closed
+        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
-        r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
-        sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
-        cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
-        r33_from_q123_closed = r33*cos_q23_closed + r13_from_q1_closed*sin_q23_closed
-        r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
-        # q4: direction and distance of a point
-        radius_q4_closed = root(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
-        along_q4_closed = r33_from_q123_closed*sigma_wrist  # q4: polar angle in the r33 and r23 equations
-        length_q4_closed = radius_q4_closed if radius_q4_closed > 1e-11 else 1.0
-        # its reference where it is free
-        cos_q4_closed = along_q4_closed/length_q4_closed if radius_q4_closed > 1e-11 else cos(free_a4)
-        cos_q4 = r22_from_q1_before_q6_tried if searched > 0.5 else cos_q4_closed
-        across_q4_closed = -r23_from_q1_closed*sigma_wrist
-        sin_q4_closed = across_q4_closed/length_q4_closed if radius_q4_closed > 1e-11 else sin(free_a4)
-        sin_q4 = q5_radius_of_q4_tried if searched > 0.5 else sin_q4_closed
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_q4, cos_q4)/DEGREE, near_a4)  # A4: its turn
-        q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
-        cos_q5 = cos_q5_tried if searched > 0.5 else q4_radius_of_q5_closed
-        r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
-        sin_q5 = sin_q5_tried if searched > 0.5 else r13_from_q123_closed
+        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4 + 0.0)/DEGREE  # A4: its turn
+        if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
+            axis_a4 = nearest_period(axis_a4, near_a4)
         open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
         near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
-        axis_a5 = nearest_period(offset_a5 + atan2(sin_q5, cos_q5)/DEGREE, near_a5)  # A5: its turn
-        r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
-        r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
-        r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
-        r22_from_q1234_closed = r22_from_q1_closed*cos_q4_closed + r32_from_q123_closed*sin_q4_closed
-        cos_q6 = cos_q6_tried if searched > 0.5 else r22_from_q1234_closed
-        r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
-        r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
-        r31_from_q123_closed = r31*cos_q23_closed + r11_from_q1_closed*sin_q23_closed
-        r21_from_q1234_closed = r21_from_q1_closed*cos_q4_closed + r31_from_q123_closed*sin_q4_closed
-        sin_q6 = sin_q6_tried if searched > 0.5 else r21_from_q1234_closed
+        axis_a5 = offset_a5 + arctan2(sin_q5, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
+            axis_a5 = nearest_period(axis_a5, near_a5)
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
-        axis_a6 = nearest_period(offset_a6 + atan2(sin_q6, cos_q6)/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
+        if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
+            axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     def _limits(self, axes: Reals) -> Status:
@@ -1150,7 +1182,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
             ),
             (),
         )
-        margin_determinant = 0.5*determinant*machine_scale*machine_scale/(root(a3*a3 + d4*d4)*a2)
+        margin_determinant = 0.5*determinant*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
         return (margin_determinant,)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:

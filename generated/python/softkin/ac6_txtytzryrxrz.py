@@ -36,8 +36,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Mechanism, Pose
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.ac6_txtytzryrxrz import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -101,7 +102,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Ac6_TXTYTZRYRXRZ"
     AXES = (
@@ -257,6 +258,13 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
             upper_a6, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, lowest_a5=-1e12, lowest_a6=-1e12,
+                highest_a1=1e12, highest_a2=1e12, highest_a3=1e12, highest_a4=1e12, highest_a5=1e12, highest_a6=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, flange_x: float, flange_y: float, flange_z: float, offset_a1: float, offset_a2: float,
@@ -509,33 +517,42 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         # a right-handed frame
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return Status.BAD_INPUT
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        if radius_a4 > 1e-11:
+            along_a4 = r33*sigma_wrist  # a4: polar angle in the r33 and r13 equations
+            cos_a4 = along_a4/radius_a4  # its reference where it is free
+            across_a4 = r13*sigma_wrist
+            sin_a4 = across_a4/radius_a4
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            cos_a4 = cos(free_a4)  # its reference where it is free
+            sin_a4 = sin(free_a4)
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
-        radius_a4 = root(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        along_a4 = r33*sigma_wrist  # a4: polar angle in the r33 and r13 equations
-        length_a4 = radius_a4 if radius_a4 > 1e-11 else 1.0
-        cos_a4 = along_a4/length_a4 if radius_a4 > 1e-11 else cos(free_a4)  # its reference where it is free
-        across_a4 = r13*sigma_wrist
-        sin_a4 = across_a4/length_a4 if radius_a4 > 1e-11 else sin(free_a4)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_a4, cos_a4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4 + 0.0)/DEGREE  # A4: its turn
+        if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
+            axis_a4 = nearest_period(axis_a4, near_a4)
         a4_radius_of_a5 = radius_a4*sigma_wrist
         sin_a5 = -r23
         open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
         near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
-        axis_a5 = nearest_period(offset_a5 + atan2(sin_a5, a4_radius_of_a5)/DEGREE, near_a5)  # A5: its turn
+        axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5 + 0.0)/DEGREE  # A5: its turn
+        if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
+            axis_a5 = nearest_period(axis_a5, near_a5)
         r11_from_a4 = r11*cos_a4 - r31*sin_a4
         r12_from_a4 = r12*cos_a4 - r32*sin_a4
         sin_a6 = -r12_from_a4
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
-        axis_a6 = nearest_period(offset_a6 + atan2(sin_a6, r11_from_a4)/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4 + 0.0)/DEGREE  # A6: its turn
+        if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
+            axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     def _limits(self, axes: Reals) -> Status:
@@ -645,6 +662,15 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -43,8 +43,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Mechanism, Pose
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.articulatedrobot_6dof import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -120,7 +121,7 @@ class ArticulatedRobot6DOF(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
     AXES = (
@@ -301,6 +302,13 @@ class ArticulatedRobot6DOF(Mechanism):
             upper_a6, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, lowest_a5=-1e12, lowest_a6=-1e12,
+                highest_a1=1e12, highest_a2=1e12, highest_a3=1e12, highest_a4=1e12, highest_a5=1e12, highest_a6=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, d1: float, a1: float, a2: float, d3: float, a3: float, d4: float, d6: float, offset_a1: float,
@@ -426,7 +434,7 @@ class ArticulatedRobot6DOF(Mechanism):
         single_a6 = 1.0 if (unlimited_a6 <= 0.0) and (effective_upper_a6 - effective_lower_a6 <= 360.0) else 0.0
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = a1 + a2 + a3 + d4  # a length of the machine
-        effective_q3 = root(a3*a3 + d4*d4)  # effective length that the angle turns
+        effective_q3 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
         swing_scale_q3 = 2.0*a2*effective_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         return Constants(
             d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, d6=d6, offset_a1=offset_a1, offset_a2=offset_a2,
@@ -656,31 +664,26 @@ class ArticulatedRobot6DOF(Mechanism):
             return Status.BAD_INPUT
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
-        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # out of reach
         if not (sine_square_q1 >= -1e-12):
             return Status.UNREACHABLE
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1 = root(sine_square_q1)*sigma_arm
-        # its reference where it is free
-        cos_q1 = (
-            (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1
-            if distance_q1 > 1e-11*machine_scale
-            else cos(free_a1)
-        )
-        sin_q1 = (
-            (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
-            if distance_q1 > 1e-11*machine_scale
-            else sin(free_a1)
-        )
+        if distance_q1 > 1e-11*machine_scale:
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
+            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1 = cos(free_a1)  # its reference where it is free
+            sin_q1 = sin(free_a1)
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
             (effective_q3 + reach - a2)*(a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)
@@ -689,54 +692,71 @@ class ArticulatedRobot6DOF(Mechanism):
         # out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
-        sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
+        sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
         sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
-        arm_along_q2 = d4*cos_q3 - a3*sin_q3
-        arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        length_q2 = (
-            root(across_q2*across_q2 + along_q2*along_q2)
-            if (reach > 1e-11*machine_scale) and (across_q2*across_q2 + along_q2*along_q2 > 0.0)
-            else 1.0
-        )
-        cos_q2 = along_q2/length_q2 if reach > 1e-11*machine_scale else cos(free_a2)  # its reference where it is free
-        sin_q2 = across_q2/length_q2 if reach > 1e-11*machine_scale else sin(free_a2)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
+        if reach > 1e-11*machine_scale:
+            arm_along_q2 = d4*cos_q3 - a3*sin_q3
+            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+            length_q2 = (
+                sqrt(across_q2*across_q2 + along_q2*along_q2)
+                if across_q2*across_q2 + along_q2*along_q2 > 0.0
+                else 1.0
+            )
+            cos_q2 = along_q2/length_q2  # its reference where it is free
+            sin_q2 = across_q2/length_q2
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2 = cos(free_a2)  # its reference where it is free
+            sin_q2 = sin(free_a2)
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
         sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
         cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
         r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         # q4: direction and distance of a point
-        radius_q4 = root(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
-        along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
-        length_q4 = radius_q4 if radius_q4 > 1e-11 else 1.0
-        cos_q4 = along_q4/length_q4 if radius_q4 > 1e-11 else cos(free_a4)  # its reference where it is free
-        across_q4 = r23_from_q1*sigma_hand
-        sin_q4 = across_q4/length_q4 if radius_q4 > 1e-11 else sin(free_a4)
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        if radius_q4 > 1e-11:
+            along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
+            cos_q4 = along_q4/radius_q4  # its reference where it is free
+            across_q4 = r23_from_q1*sigma_hand
+            sin_q4 = across_q4/radius_q4
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            cos_q4 = cos(free_a4)  # its reference where it is free
+            sin_q4 = sin(free_a4)
+        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
+        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
+        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_q4, cos_q4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4 + 0.0)/DEGREE  # A4: its turn
+        if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
+            axis_a4 = nearest_period(axis_a4, near_a4)
         q4_radius_of_q5 = radius_q4*sigma_hand
         r23_from_q123 = -r13_from_q1*cos_q23 - r33*sin_q23
         cos_q5 = -r23_from_q123  # q5: linear pair in the q4 radius and r23 equations
         open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
         near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
-        axis_a5 = nearest_period(offset_a5 + atan2(q4_radius_of_q5, cos_q5)/DEGREE, near_a5)  # A5: its turn
+        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
+            axis_a5 = nearest_period(axis_a5, near_a5)
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
@@ -747,7 +767,9 @@ class ArticulatedRobot6DOF(Mechanism):
         r22_from_q1234 = -r22_from_q1*cos_q4 - r12_from_q123*sin_q4
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
-        axis_a6 = nearest_period(offset_a6 + atan2(r21_from_q1234, r22_from_q1234)/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = offset_a6 + arctan2(r21_from_q1234, r22_from_q1234 + 0.0)/DEGREE  # A6: its turn
+        if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
+            axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     def _limits(self, axes: Reals) -> Status:
@@ -950,6 +972,15 @@ class ArticulatedRobot6DOF(Mechanism):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

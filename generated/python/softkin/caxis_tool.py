@@ -30,9 +30,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.caxis_tool import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
@@ -63,7 +64,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_CAxis_Tool"
     AXES = (
@@ -128,6 +129,10 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         """
         values = self._accept(tool_x, tool_y, tool_z, offset_c, lower_c, upper_c, check_limits)
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(lowest_c=-1e12, highest_c=1e12)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, tool_x: float, tool_y: float, tool_z: float, offset_c: float, lower_c: float, upper_c: float,
@@ -158,7 +163,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         single_c = 1.0 if (unlimited_c <= 0.0) and (effective_upper_c - effective_lower_c <= 360.0) else 0.0
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
         machine_scale = 1.0  # a length of the machine
-        unmet_offset = root(tool_x*tool_x + tool_y*tool_y)  # turns in a way that nothing commands
+        unmet_offset = sqrt(tool_x*tool_x + tool_y*tool_y)  # turns in a way that nothing commands
         return Constants(
             tool_x=tool_x, tool_y=tool_y, tool_z=tool_z, offset_c=offset_c, check_limits=check_limits,
             lower_c=effective_lower_c, upper_c=effective_upper_c, unlimited_c=unlimited_c, lowest_c=lowest_c,
@@ -226,7 +231,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             return Status.BAD_INPUT
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
@@ -235,7 +240,9 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         sin_heading = heading_across/heading_divisor
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
-        axis_c = nearest_period(offset_c + atan2(sin_heading, cos_heading)/DEGREE, near_c)  # C: its turn
+        axis_c = offset_c + arctan2(sin_heading, cos_heading + 0.0)/DEGREE  # C: its turn
+        if not -180.000000001 <= axis_c - near_c < 179.999999999:
+            axis_c = nearest_period(axis_c, near_c)
         return (axis_c,)
 
     def _limits(self, axes: Reals) -> Status:
@@ -344,7 +351,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)),
             (r13, r23, r33),
             (0.0, 0.0, 1.0),
-            root(flange_axis_x*flange_axis_x + flange_axis_y*flange_axis_y),
+            sqrt(flange_axis_x*flange_axis_x + flange_axis_y*flange_axis_y),
         )
 
     def _projection(self, rotation: Rotation) -> Rotation | Status:
@@ -368,7 +375,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             return Status.BAD_INPUT
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
@@ -376,6 +383,15 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

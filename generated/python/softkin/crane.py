@@ -33,8 +33,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_on_arc, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.crane import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -73,7 +74,7 @@ class Crane(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Crane"
     AXES = (
@@ -162,6 +163,13 @@ class Crane(OffsetKinematics):
             check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_r=-1e12, lowest_theta=-1e12, lowest_phi=-1e12, highest_r=1e12, highest_theta=1e12,
+                highest_phi=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, offset_r: float, offset_theta: float, offset_phi: float, lower_r: float, upper_r: float,
@@ -298,35 +306,33 @@ class Crane(OffsetKinematics):
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_phi) <= 1e9 and abs(ref_theta) <= 1e9):
             return Status.BAD_INPUT
-        radius_theta = root(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = root(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
+        if radius_theta > 1e-11*machine_scale:
+            cos_theta = x/radius_theta  # its reference where it is free
+            sin_theta = y/radius_theta
+        else:
+            free_theta = (ref_theta - offset_theta)*DEGREE
+            cos_theta = cos(free_theta)  # its reference where it is free
+            sin_theta = sin(free_theta)
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        if radius_phi > 1e-11*machine_scale:
+            cos_phi = z/radius_phi  # its reference where it is free
+            sin_phi = radius_theta/radius_phi
+        else:
+            free_phi = (ref_phi - offset_phi)*DEGREE
+            cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
         axis_r = offset_r + radius_phi
-        free_theta = (ref_theta - offset_theta)*DEGREE
-        length_theta = radius_theta if radius_theta > 1e-11*machine_scale else 1.0
-        # its reference where it is free
-        cos_theta = x/length_theta if radius_theta > 1e-11*machine_scale else cos(free_theta)
-        sin_theta = y/length_theta if radius_theta > 1e-11*machine_scale else sin(free_theta)
         open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
         near_theta = (
             (360.0*turn_theta - 360.0 if turn_theta > 0.0 else 360.0*turn_theta)
             if abs(turn_theta) > 0.0
             else open_theta
         )
-        axis_theta = nearest_period(offset_theta + atan2(sin_theta, cos_theta)/DEGREE, near_theta)  # Theta: its turn
-        free_phi = (ref_phi - offset_phi)*DEGREE
-        length_phi = radius_phi if radius_phi > 1e-11*machine_scale else 1.0
-        # its reference where it is free
-        cos_phi = (
-            z/length_phi
-            if radius_phi > 1e-11*machine_scale
-            else cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        )
-        sin_phi = (
-            radius_theta/length_phi
-            if radius_phi > 1e-11*machine_scale
-            else sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        )
-        axis_phi = offset_phi + atan2(sin_phi, cos_phi)/DEGREE
+        axis_theta = offset_theta + arctan2(sin_theta, cos_theta + 0.0)/DEGREE  # Theta: its turn
+        if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
+            axis_theta = nearest_period(axis_theta, near_theta)
+        axis_phi = offset_phi + arctan2(sin_phi + 0.0, cos_phi + 0.0)/DEGREE
         return (axis_r, axis_theta, axis_phi)
 
     def _limits(self, axes: Reals) -> Status:
@@ -377,8 +383,8 @@ class Crane(OffsetKinematics):
         x = r*cos_theta*sin_phi  # x: affine in the x equation
         sin_theta = sin(theta)
         y = r*sin_phi*sin_theta  # y: affine in the y equation
-        radius_theta = root(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = root(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         margin_free_phi = radius_phi/machine_scale
         return (sin_phi, margin_free_phi)
 
@@ -436,38 +442,36 @@ class Crane(OffsetKinematics):
             and abs(point_z) <= 1e9 and abs(ref_phi) <= 1e9 and abs(ref_theta) <= 1e9
         ):
             return Status.BAD_INPUT
-        flange_z = z - point_z  # the flange behind the point
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
-        radius_theta = root(flange_x*flange_x + flange_y*flange_y)  # theta: direction and distance of a point
-        radius_phi = root(flange_z*flange_z + radius_theta*radius_theta)  # phi: direction and distance of a point
+        radius_theta = sqrt(flange_x*flange_x + flange_y*flange_y)  # theta: direction and distance of a point
+        if radius_theta > 1e-11*machine_scale:
+            cos_theta = flange_x/radius_theta  # its reference where it is free
+            sin_theta = flange_y/radius_theta
+        else:
+            free_theta = (ref_theta - offset_theta)*DEGREE
+            cos_theta = cos(free_theta)  # its reference where it is free
+            sin_theta = sin(free_theta)
+        flange_z = z - point_z  # the flange behind the point
+        radius_phi = sqrt(flange_z*flange_z + radius_theta*radius_theta)  # phi: direction and distance of a point
+        if radius_phi > 1e-11*machine_scale:
+            cos_phi = flange_z/radius_phi  # its reference where it is free
+            sin_phi = radius_theta/radius_phi
+        else:
+            free_phi = (ref_phi - offset_phi)*DEGREE
+            cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
         axis_r = offset_r + radius_phi
-        free_theta = (ref_theta - offset_theta)*DEGREE
-        length_theta = radius_theta if radius_theta > 1e-11*machine_scale else 1.0
-        # its reference where it is free
-        cos_theta = flange_x/length_theta if radius_theta > 1e-11*machine_scale else cos(free_theta)
-        sin_theta = flange_y/length_theta if radius_theta > 1e-11*machine_scale else sin(free_theta)
         open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
         near_theta = (
             (360.0*turn_theta - 360.0 if turn_theta > 0.0 else 360.0*turn_theta)
             if abs(turn_theta) > 0.0
             else open_theta
         )
-        axis_theta = nearest_period(offset_theta + atan2(sin_theta, cos_theta)/DEGREE, near_theta)  # Theta: its turn
-        free_phi = (ref_phi - offset_phi)*DEGREE
-        length_phi = radius_phi if radius_phi > 1e-11*machine_scale else 1.0
-        # its reference where it is free
-        cos_phi = (
-            flange_z/length_phi
-            if radius_phi > 1e-11*machine_scale
-            else cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        )
-        sin_phi = (
-            radius_theta/length_phi
-            if radius_phi > 1e-11*machine_scale
-            else sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        )
-        axis_phi = offset_phi + atan2(sin_phi, cos_phi)/DEGREE
+        axis_theta = offset_theta + arctan2(sin_theta, cos_theta + 0.0)/DEGREE  # Theta: its turn
+        if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
+            axis_theta = nearest_period(axis_theta, near_theta)
+        axis_phi = offset_phi + arctan2(sin_phi + 0.0, cos_phi + 0.0)/DEGREE
         return (axis_r, axis_theta, axis_phi)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -486,6 +490,15 @@ class Crane(OffsetKinematics):
         if not (axis_phi - offset_phi >= -1e-9 and axis_phi - offset_phi <= 180.000000181):
             return Status.IMPOSSIBLE
         return ()
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

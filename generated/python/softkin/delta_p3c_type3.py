@@ -40,8 +40,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.delta_p3c_type3 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -108,7 +109,7 @@ class DeltaP3CType3(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Delta_P3C_Type3"
     AXES = (
@@ -300,6 +301,12 @@ class DeltaP3CType3(OffsetKinematics):
             min_type2_margin, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, azimuth_1: float, azimuth_2: float, azimuth_3: float, base_radius_1: float, base_radius_2: float,
@@ -995,7 +1002,7 @@ class DeltaP3CType3(OffsetKinematics):
         span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
         span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
-        effective_a1 = root(along_a1*along_a1 + z*z)  # effective length that the angle turns
+        effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a1 > 1e-9*inner_arm_1):
             return Status.UNREACHABLE
@@ -1019,7 +1026,7 @@ class DeltaP3CType3(OffsetKinematics):
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = root(along_a2*along_a2 + z*z)  # effective length that the angle turns
+        effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a2 > 1e-9*inner_arm_2):
             return Status.UNREACHABLE
@@ -1043,7 +1050,7 @@ class DeltaP3CType3(OffsetKinematics):
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = root(along_a3*along_a3 + z*z)  # effective length that the angle turns
+        effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a3 > 1e-9*inner_arm_3):
             return Status.UNREACHABLE
@@ -1068,7 +1075,7 @@ class DeltaP3CType3(OffsetKinematics):
             (inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z - outer_arm_1*outer_arm_1)
             /swing_scale_a1
         )
-        sin_swing_a1 = -root(sine_square_a1)*sigma_knee_1
+        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
         # rod 1
         pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
@@ -1083,7 +1090,7 @@ class DeltaP3CType3(OffsetKinematics):
             (inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z - outer_arm_2*outer_arm_2)
             /swing_scale_a2
         )
-        sin_swing_a2 = -root(sine_square_a2)*sigma_knee_2
+        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
         # rod 2
         pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
@@ -1098,7 +1105,7 @@ class DeltaP3CType3(OffsetKinematics):
             (inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z - outer_arm_3*outer_arm_3)
             /swing_scale_a3
         )
-        sin_swing_a3 = -root(sine_square_a3)*sigma_knee_3
+        sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
         # rod 3
         pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
@@ -1122,13 +1129,19 @@ class DeltaP3CType3(OffsetKinematics):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
     def _limits(self, axes: Reals) -> Status:
@@ -1507,7 +1520,7 @@ class DeltaP3CType3(OffsetKinematics):
         flange_y = y - point_y  # the flange behind the point
         span_1_y = flange_y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
-        effective_a1 = root(along_a1*along_a1 + flange_z*flange_z)  # effective length that the angle turns
+        effective_a1 = sqrt(along_a1*along_a1 + flange_z*flange_z)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a1 > 1e-9*inner_arm_1):
             return Status.UNREACHABLE
@@ -1531,7 +1544,7 @@ class DeltaP3CType3(OffsetKinematics):
         span_2_x = flange_x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = flange_y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = root(along_a2*along_a2 + flange_z*flange_z)  # effective length that the angle turns
+        effective_a2 = sqrt(along_a2*along_a2 + flange_z*flange_z)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a2 > 1e-9*inner_arm_2):
             return Status.UNREACHABLE
@@ -1555,7 +1568,7 @@ class DeltaP3CType3(OffsetKinematics):
         span_3_x = flange_x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = flange_y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = root(along_a3*along_a3 + flange_z*flange_z)  # effective length that the angle turns
+        effective_a3 = sqrt(along_a3*along_a3 + flange_z*flange_z)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a3 > 1e-9*inner_arm_3):
             return Status.UNREACHABLE
@@ -1583,7 +1596,7 @@ class DeltaP3CType3(OffsetKinematics):
             )
             /swing_scale_a1
         )
-        sin_swing_a1 = -root(sine_square_a1)*sigma_knee_1
+        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + flange_z*sin_swing_a1/divisor_a1
         # rod 1
         pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
@@ -1601,7 +1614,7 @@ class DeltaP3CType3(OffsetKinematics):
             )
             /swing_scale_a2
         )
-        sin_swing_a2 = -root(sine_square_a2)*sigma_knee_2
+        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + flange_z*sin_swing_a2/divisor_a2
         # rod 2
         pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
@@ -1619,7 +1632,7 @@ class DeltaP3CType3(OffsetKinematics):
             )
             /swing_scale_a3
         )
-        sin_swing_a3 = -root(sine_square_a3)*sigma_knee_3
+        sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + flange_z*sin_swing_a3/divisor_a3
         # rod 3
         pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
@@ -1643,13 +1656,19 @@ class DeltaP3CType3(OffsetKinematics):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -1764,6 +1783,15 @@ class DeltaP3CType3(OffsetKinematics):
         span_3_y = flange_y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         branch_knee_3 = (-flange_z*cos_a3 - span_3_x*cos_azimuth_3*sin_a3 - span_3_y*sin_a3*sin_azimuth_3)/outer_arm_3
         return (branch_knee_1, branch_knee_2, branch_knee_3)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -30,7 +30,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._types import Axis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.gantry3 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -67,7 +68,7 @@ class Gantry3(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Gantry3"
     AXES = (
@@ -150,6 +151,12 @@ class Gantry3(OffsetKinematics):
             offset_x, offset_y, offset_z, lower_x, upper_x, lower_y, upper_y, lower_z, upper_z, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_x=-1e12, lowest_y=-1e12, lowest_z=-1e12, highest_x=1e12, highest_y=1e12, highest_z=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, offset_x: float, offset_y: float, offset_z: float, lower_x: float, upper_x: float, lower_y: float,
@@ -319,6 +326,15 @@ class Gantry3(OffsetKinematics):
         if not (abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9 and abs(axis_z) <= 1e9):
             return Status.BAD_INPUT
         return ()
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

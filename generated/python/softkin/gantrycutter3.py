@@ -32,9 +32,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.gantrycutter3 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -80,7 +81,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_GantryCutter3"
     AXES = (
@@ -189,6 +190,13 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
             lower_r, upper_r, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_x=-1e12, lowest_y=-1e12, lowest_z=-1e12, lowest_r=-1e12, highest_x=1e12, highest_y=1e12,
+                highest_z=1e12, highest_r=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, direction_r: float, offset_x: float, offset_y: float, offset_z: float, offset_r: float,
@@ -344,7 +352,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
@@ -357,7 +365,9 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         sin_r = direction_r*sin_heading
         open_r = mid_r if single_r > 0.0 else ref_r  # R: where its turn is open
         near_r = (360.0*turn_r - 360.0 if turn_r > 0.0 else 360.0*turn_r) if abs(turn_r) > 0.0 else open_r
-        axis_r = nearest_period(offset_r + atan2(sin_r, cos_heading)/DEGREE, near_r)  # R: its turn
+        axis_r = offset_r + arctan2(sin_r, cos_heading + 0.0)/DEGREE  # R: its turn
+        if not -180.000000001 <= axis_r - near_r < 179.999999999:
+            axis_r = nearest_period(axis_r, near_r)
         return (axis_x, axis_y, axis_z, axis_r)
 
     def _limits(self, axes: Reals) -> Status:
@@ -446,7 +456,7 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
@@ -494,6 +504,15 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         if not (abs(axis_r) <= 1e9 and abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9 and abs(axis_z) <= 1e9):
             return Status.BAD_INPUT
         return ()
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -48,9 +48,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
-from softkin._scalar import DEGREE, cos, root, sin, solve
+from softkin._scalar import DEGREE, cos, root, sin, solve, sqrt
 from softkin._start import IterativeForward
-from softkin._types import Axis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.hexapod import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import StartedPrograms
@@ -200,7 +201,7 @@ class Hexapod(IterativeForward):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Hexapod"
     AXES = (
@@ -616,6 +617,13 @@ class Hexapod(IterativeForward):
             upper_l5, lower_l6, upper_l6, min_type2_margin, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_l1=-1e12, lowest_l2=-1e12, lowest_l3=-1e12, lowest_l4=-1e12, lowest_l5=-1e12, lowest_l6=-1e12,
+                highest_l1=1e12, highest_l2=1e12, highest_l3=1e12, highest_l4=1e12, highest_l5=1e12, highest_l6=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, base_1_x: float, base_1_y: float, base_1_z: float, base_2_x: float, base_2_y: float,
@@ -960,12 +968,12 @@ class Hexapod(IterativeForward):
         span_6_x = home_arm_6_x + home_x - base_6_x  # leg 6: from its joint on the base to its joint on the platform
         span_6_y = home_arm_6_y + home_y - base_6_y
         span_6_z = home_arm_6_z + home_z - base_6_z
-        length_1 = root(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
-        length_2 = root(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
-        length_3 = root(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
-        length_4 = root(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
-        length_5 = root(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
-        length_6 = root(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
+        length_1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
+        length_2 = sqrt(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
+        length_3 = sqrt(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
+        length_4 = sqrt(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
+        length_5 = sqrt(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
+        length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
         # a length of the machine: the mean leg and the platform
         machine_scale = (
             length_1/6.0 + length_2/6.0 + length_3/6.0 + length_4/6.0 + length_5/6.0 + length_6/6.0 + platform_radius
@@ -1222,7 +1230,7 @@ class Hexapod(IterativeForward):
             turned_33 = cos_pitch*cos_roll
             arm_1_z = start_arm_1_x*turned_31 + start_arm_1_y*turned_32 + start_arm_1_z*turned_33
             span_1_z = arm_1_z + z - base_1_z
-            length_1 = root(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
+            length_1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
             error_1 = length_1 - l1  # by what leg 1 would be too long
             arm_2_x = start_arm_2_x*turned_11 + start_arm_2_y*turned_12 + start_arm_2_z*turned_13
             span_2_x = arm_2_x + x - base_2_x  # leg 2: from its joint on the base to its joint on the platform
@@ -1230,7 +1238,7 @@ class Hexapod(IterativeForward):
             span_2_y = arm_2_y + y - base_2_y
             arm_2_z = start_arm_2_x*turned_31 + start_arm_2_y*turned_32 + start_arm_2_z*turned_33
             span_2_z = arm_2_z + z - base_2_z
-            length_2 = root(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
+            length_2 = sqrt(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
             error_2 = length_2 - l2  # by what leg 2 would be too long
             arm_3_x = start_arm_3_x*turned_11 + start_arm_3_y*turned_12 + start_arm_3_z*turned_13
             span_3_x = arm_3_x + x - base_3_x  # leg 3: from its joint on the base to its joint on the platform
@@ -1238,7 +1246,7 @@ class Hexapod(IterativeForward):
             span_3_y = arm_3_y + y - base_3_y
             arm_3_z = start_arm_3_x*turned_31 + start_arm_3_y*turned_32 + start_arm_3_z*turned_33
             span_3_z = arm_3_z + z - base_3_z
-            length_3 = root(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
+            length_3 = sqrt(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
             error_3 = length_3 - l3  # by what leg 3 would be too long
             arm_4_x = start_arm_4_x*turned_11 + start_arm_4_y*turned_12 + start_arm_4_z*turned_13
             span_4_x = arm_4_x + x - base_4_x  # leg 4: from its joint on the base to its joint on the platform
@@ -1246,7 +1254,7 @@ class Hexapod(IterativeForward):
             span_4_y = arm_4_y + y - base_4_y
             arm_4_z = start_arm_4_x*turned_31 + start_arm_4_y*turned_32 + start_arm_4_z*turned_33
             span_4_z = arm_4_z + z - base_4_z
-            length_4 = root(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
+            length_4 = sqrt(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
             error_4 = length_4 - l4  # by what leg 4 would be too long
             arm_5_x = start_arm_5_x*turned_11 + start_arm_5_y*turned_12 + start_arm_5_z*turned_13
             span_5_x = arm_5_x + x - base_5_x  # leg 5: from its joint on the base to its joint on the platform
@@ -1254,7 +1262,7 @@ class Hexapod(IterativeForward):
             span_5_y = arm_5_y + y - base_5_y
             arm_5_z = start_arm_5_x*turned_31 + start_arm_5_y*turned_32 + start_arm_5_z*turned_33
             span_5_z = arm_5_z + z - base_5_z
-            length_5 = root(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
+            length_5 = sqrt(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
             error_5 = length_5 - l5  # by what leg 5 would be too long
             arm_6_x = start_arm_6_x*turned_11 + start_arm_6_y*turned_12 + start_arm_6_z*turned_13
             span_6_x = arm_6_x + x - base_6_x  # leg 6: from its joint on the base to its joint on the platform
@@ -1262,7 +1270,7 @@ class Hexapod(IterativeForward):
             span_6_y = arm_6_y + y - base_6_y
             arm_6_z = start_arm_6_x*turned_31 + start_arm_6_y*turned_32 + start_arm_6_z*turned_33
             span_6_z = arm_6_z + z - base_6_z
-            length_6 = root(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
+            length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
             error_6 = length_6 - l6  # by what leg 6 would be too long
             # whether the rods fit
             fit = (
@@ -1591,37 +1599,37 @@ class Hexapod(IterativeForward):
         span_1_z = z + platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33 - base_1_z  # rod 1
         # l1: quadratic in the rod 1 equation
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
-        l1 = root(root_square_l1)
+        l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
         span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
         span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z  # rod 2
         # l2: quadratic in the rod 2 equation
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
-        l2 = root(root_square_l2)
+        l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
         span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
         span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z  # rod 3
         # l3: quadratic in the rod 3 equation
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
-        l3 = root(root_square_l3)
+        l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
         span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
         span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z  # rod 4
         # l4: quadratic in the rod 4 equation
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
-        l4 = root(root_square_l4)
+        l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
         span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
         span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z  # rod 5
         # l5: quadratic in the rod 5 equation
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
-        l5 = root(root_square_l5)
+        l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
         span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
         span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z  # rod 6
         # l6: quadratic in the rod 6 equation
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
-        l6 = root(root_square_l6)
+        l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # a leg without length has no direction
         if not (
             l1 > 1e-9*machine_scale and l2 > 1e-9*machine_scale and l3 > 1e-9*machine_scale
@@ -1908,6 +1916,15 @@ class Hexapod(IterativeForward):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays."""

@@ -36,8 +36,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.mc_kin_type_12_xy import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -81,7 +82,7 @@ class KinType12XY(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "MC_KIN_TYPE_12_XY"
     AXES = (
@@ -202,6 +203,10 @@ class KinType12XY(OffsetKinematics):
             lower_a1, upper_a1, lower_a2, upper_a2, e_right, min_type2_margin, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(lowest_a1=-1e12, lowest_a2=-1e12, highest_a1=1e12, highest_a2=1e12)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, link_length_1: float, link_length_2: float, link_length_3: float, link_length_4: float,
@@ -535,7 +540,7 @@ class KinType12XY(OffsetKinematics):
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
-        effective_a1 = root(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # the effective length is too short to be aimed
         if not (effective_a1 > 1e-9*link_length_1):
             return Status.UNREACHABLE
@@ -553,7 +558,7 @@ class KinType12XY(OffsetKinematics):
         cos_swing_a1 = (
             (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
         )
-        sin_swing_a1 = -root(sine_square_a1)*sigma_t
+        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
         span_rear_x = (
@@ -574,7 +579,7 @@ class KinType12XY(OffsetKinematics):
             (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
             /link_length_2
         )
-        effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a2 > 1e-9*link_length_5):
             return Status.UNREACHABLE
@@ -629,7 +634,7 @@ class KinType12XY(OffsetKinematics):
             )
             /swing_scale_a2
         )
-        sin_swing_a2 = -root(sine_square_a2)*sigma_w
+        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
@@ -673,10 +678,14 @@ class KinType12XY(OffsetKinematics):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
     def _limits(self, axes: Reals) -> Status:
@@ -1041,7 +1050,7 @@ class KinType12XY(OffsetKinematics):
         span_upper_x = flange_x + flange_y*swap_xy - flange_x*swap_xy  # rod upper
         span_upper_y = flange_y + flange_x*swap_xy - flange_y*swap_xy  # rod upper
         # effective length that the angle turns
-        effective_a1 = root(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # the effective length is too short to be aimed
         if not (effective_a1 > 1e-9*link_length_1):
             return Status.UNREACHABLE
@@ -1059,7 +1068,7 @@ class KinType12XY(OffsetKinematics):
         cos_swing_a1 = (
             (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
         )
-        sin_swing_a1 = -root(sine_square_a1)*sigma_t
+        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
         span_rear_x = (
@@ -1080,7 +1089,7 @@ class KinType12XY(OffsetKinematics):
             (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
             /link_length_2
         )
-        effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a2 > 1e-9*link_length_5):
             return Status.UNREACHABLE
@@ -1135,7 +1144,7 @@ class KinType12XY(OffsetKinematics):
             )
             /swing_scale_a2
         )
-        sin_swing_a2 = -root(sine_square_a2)*sigma_w
+        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
@@ -1179,10 +1188,14 @@ class KinType12XY(OffsetKinematics):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -1301,6 +1314,15 @@ class KinType12XY(OffsetKinematics):
             /(link_length_2*link_length_4)
         )
         return (branch_t, branch_w)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

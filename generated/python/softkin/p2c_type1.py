@@ -36,8 +36,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.p2c_type1 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -79,7 +80,7 @@ class P2CType1(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_P2C_Type1"
     AXES = (
@@ -190,6 +191,10 @@ class P2CType1(OffsetKinematics):
             upper_a2, tcp_above, min_type2_margin, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(lowest_a1=-1e12, lowest_a2=-1e12, highest_a1=1e12, highest_a2=1e12)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, inner_arm: float, outer_arm: float, displacement: float, tcp_displacement: float, offset_a1: float,
@@ -382,7 +387,7 @@ class P2CType1(OffsetKinematics):
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         span_1_x = displacement + x - tcp_displacement  # rod 1
-        effective_a1 = root(span_1_x*span_1_x + y*y)  # effective length that the angle turns
+        effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a1 > 1e-9*inner_arm):
             return Status.UNREACHABLE
@@ -397,7 +402,7 @@ class P2CType1(OffsetKinematics):
         if not (sine_square_a1 >= -1e-12):
             return Status.UNREACHABLE
         span_2_x = tcp_displacement + x - displacement  # rod 2
-        effective_a2 = root(span_2_x*span_2_x + y*y)  # effective length that the angle turns
+        effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a2 > 1e-9*inner_arm):
             return Status.UNREACHABLE
@@ -412,7 +417,7 @@ class P2CType1(OffsetKinematics):
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
-        sin_swing_a1 = root(sine_square_a1)*sigma_knee_1
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
         pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
@@ -420,7 +425,7 @@ class P2CType1(OffsetKinematics):
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
         cos_swing_a2 = (divisor_a2*divisor_a2 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a2
-        sin_swing_a2 = -root(sine_square_a2)*sigma_knee_2
+        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
         rod_2_x = x - pivot_2_x
@@ -433,10 +438,14 @@ class P2CType1(OffsetKinematics):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
     def _limits(self, axes: Reals) -> Status:
@@ -615,7 +624,7 @@ class P2CType1(OffsetKinematics):
         flange_y = y - point_y  # the flange behind the point
         flange_x = x - point_x  # the flange behind the point
         span_1_x = displacement + flange_x - tcp_displacement  # rod 1
-        effective_a1 = root(flange_y*flange_y + span_1_x*span_1_x)  # effective length that the angle turns
+        effective_a1 = sqrt(flange_y*flange_y + span_1_x*span_1_x)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a1 > 1e-9*inner_arm):
             return Status.UNREACHABLE
@@ -630,7 +639,7 @@ class P2CType1(OffsetKinematics):
         if not (sine_square_a1 >= -1e-12):
             return Status.UNREACHABLE
         span_2_x = flange_x + tcp_displacement - displacement  # rod 2
-        effective_a2 = root(flange_y*flange_y + span_2_x*span_2_x)  # effective length that the angle turns
+        effective_a2 = sqrt(flange_y*flange_y + span_2_x*span_2_x)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a2 > 1e-9*inner_arm):
             return Status.UNREACHABLE
@@ -645,7 +654,7 @@ class P2CType1(OffsetKinematics):
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
-        sin_swing_a1 = root(sine_square_a1)*sigma_knee_1
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - flange_y*sin_swing_a1/divisor_a1
         pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
         rod_1_x = flange_x - pivot_1_x
@@ -653,7 +662,7 @@ class P2CType1(OffsetKinematics):
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = flange_y - pivot_1_y
         cos_swing_a2 = (divisor_a2*divisor_a2 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a2
-        sin_swing_a2 = -root(sine_square_a2)*sigma_knee_2
+        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + flange_y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
         rod_2_x = flange_x - pivot_2_x
@@ -666,10 +675,14 @@ class P2CType1(OffsetKinematics):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -720,6 +733,15 @@ class P2CType1(OffsetKinematics):
         span_2_x = flange_x + tcp_displacement - displacement  # rod 2
         branch_knee_2 = (-flange_y*cos_a2 - span_2_x*sin_a2)/outer_arm
         return (branch_knee_1, branch_knee_2)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -34,8 +34,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import root
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import root, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.p2x_type1 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -76,7 +77,7 @@ class P2XType1(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_P2X_Type1"
     AXES = (
@@ -191,6 +192,10 @@ class P2XType1(OffsetKinematics):
             lower_a1, upper_a1, lower_a2, upper_a2, tcp_above, min_type2_margin, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(lowest_a1=-1e12, lowest_a2=-1e12, highest_a1=1e12, highest_a2=1e12)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, arm_length_1: float, arm_length_2: float, rail_y_1: float, rail_y_2: float, tcp_offset_1: float,
@@ -389,12 +394,12 @@ class P2XType1(OffsetKinematics):
         if not (root_square_a2 >= -1e-12*arm_length_2*arm_length_2):
             return Status.UNREACHABLE
         span_1_x = x - tcp_offset_1  # rod 1
-        a1 = span_1_x - root(root_square_a1)*sigma_carriage_1
+        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
         rod_1_x = x - pivot_1_x
         rod_1_y = y - rail_y_1
         span_2_x = tcp_offset_2 + x  # rod 2
-        a2 = span_2_x + root(root_square_a2)*sigma_carriage_2
+        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         rod_2_x = x - pivot_2_x
         rod_2_y = y - rail_y_2
@@ -580,12 +585,12 @@ class P2XType1(OffsetKinematics):
             return Status.UNREACHABLE
         flange_x = x - point_x  # the flange behind the point
         span_1_x = flange_x - tcp_offset_1  # rod 1
-        a1 = span_1_x - root(root_square_a1)*sigma_carriage_1
+        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
         rod_1_x = flange_x - pivot_1_x
         rod_1_y = flange_y - rail_y_1
         span_2_x = flange_x + tcp_offset_2  # rod 2
-        a2 = span_2_x + root(root_square_a2)*sigma_carriage_2
+        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         rod_2_x = flange_x - pivot_2_x
         rod_2_y = flange_y - rail_y_2
@@ -641,6 +646,15 @@ class P2XType1(OffsetKinematics):
         span_2_x = flange_x + tcp_offset_2  # rod 2
         branch_carriage_2 = (a2 - span_2_x)/arm_length_2
         return (branch_carriage_1, branch_carriage_2)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

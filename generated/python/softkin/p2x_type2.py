@@ -31,8 +31,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import root
-from softkin._types import Axis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import sqrt
+from softkin._types import Axis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.p2x_type2 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -69,7 +70,7 @@ class P2XType2(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_P2X_Type2"
     AXES = (
@@ -160,6 +161,10 @@ class P2XType2(OffsetKinematics):
             min_type2_margin, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(lowest_a1=-1e12, lowest_a2=-1e12, highest_a1=1e12, highest_a2=1e12)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, arm_length: float, tcp_link_distance: float, offset_a1: float, offset_a2: float, lower_a1: float,
@@ -243,7 +248,7 @@ class P2XType2(OffsetKinematics):
         if not (root_square_y >= -1e-12*arm_length*arm_length):
             return Status.IMPOSSIBLE
         x = 0.5*a1 + 0.5*a2  # x: affine in the x equation
-        y = root(root_square_y)*assembly_sign
+        y = (sqrt(root_square_y) if root_square_y > 0.0 else 0.0)*assembly_sign
         return ((x, y, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), ())
 
     def _orientation(self, axes: Reals) -> Rotation | Status:
@@ -298,7 +303,7 @@ class P2XType2(OffsetKinematics):
         if not (type2_flat >= min_type2_margin):
             return Status.UNREACHABLE
         middle_a2 = span_1_x + x
-        a2 = middle_a2 + root(root_square_a2)
+        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         a1 = 2.0*x - a2  # a1: affine in the x equation
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -346,7 +351,7 @@ class P2XType2(OffsetKinematics):
             return Status.IMPOSSIBLE
         x = 0.5*a1 + 0.5*a2  # x: affine in the x equation
         margin_meet_a2 = (2.0*a2 - 2.0*span_1_x - 2.0*x)/arm_length
-        y = root(root_square_y)*assembly_sign
+        y = (sqrt(root_square_y) if root_square_y > 0.0 else 0.0)*assembly_sign
         margin_flat = y/arm_length
         return (margin_meet_a2, margin_flat)
 
@@ -373,7 +378,7 @@ class P2XType2(OffsetKinematics):
         # rod 1 cannot reach
         if not (root_square_y >= -1e-12*arm_length*arm_length):
             return Status.IMPOSSIBLE
-        y = root(root_square_y)*assembly_sign
+        y = (sqrt(root_square_y) if root_square_y > 0.0 else 0.0)*assembly_sign
         slope_2_by_y = 2.0*y
         # nothing controls the plate
         if not (abs(slope_2_by_y) > 1e-11*machine_scale*machine_scale):
@@ -425,7 +430,7 @@ class P2XType2(OffsetKinematics):
             return Status.UNREACHABLE
         flange_x = x - point_x  # the flange behind the point
         middle_a2 = flange_x + span_1_x
-        a2 = middle_a2 + root(root_square_a2)
+        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         a1 = 2.0*flange_x - a2  # a1: affine in the x equation
         axis_a1 = a1 + offset_a1
         axis_a2 = a2 + offset_a2
@@ -454,6 +459,15 @@ class P2XType2(OffsetKinematics):
         if not (root_square_y >= -1e-12*arm_length*arm_length):
             return Status.IMPOSSIBLE
         return ()
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

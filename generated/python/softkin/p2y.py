@@ -29,7 +29,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._types import Axis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.p2y import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -70,7 +71,7 @@ class P2Y(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_P2Y"
     AXES = (
@@ -162,6 +163,13 @@ class P2Y(OffsetKinematics):
             check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_x=-1e12, lowest_y=-1e12, highest_a1=1e12, highest_a2=1e12,
+                highest_x=1e12, highest_y=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, offset_a1: float, offset_a2: float, lower_a1: float, upper_a1: float, lower_a2: float,
@@ -358,6 +366,15 @@ class P2Y(OffsetKinematics):
         if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9):
             return Status.BAD_INPUT
         return ()
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

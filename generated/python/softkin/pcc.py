@@ -35,8 +35,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.pcc import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -79,7 +80,7 @@ class PCC(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_PCC"
     AXES = (
@@ -176,6 +177,13 @@ class PCC(OffsetKinematics):
             upper_elbow, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_elbow=-1e12, highest_a1=1e12, highest_a2=1e12,
+                highest_elbow=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, link_length_1: float, link_length_2: float, offset_a1: float, offset_a2: float, lower_a1: float,
@@ -308,7 +316,7 @@ class PCC(OffsetKinematics):
         # z of a planar machine
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2_from_a1 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -318,28 +326,36 @@ class PCC(OffsetKinematics):
         # out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return Status.UNREACHABLE
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-        sin_a2_from_a1 = root(sine_square_a2_from_a1)*sigma_elbow
-        arm_across_a1 = link_length_2*sin_a2_from_a1
-        along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-        across_a1 = arm_along_a1*y - arm_across_a1*x
-        length_a1 = (
-            root(across_a1*across_a1 + along_a1*along_a1)
-            if (reach > 1e-11*machine_scale) and (across_a1*across_a1 + along_a1*along_a1 > 0.0)
-            else 1.0
-        )
-        cos_a1 = along_a1/length_a1 if reach > 1e-11*machine_scale else cos(free_a1)  # its reference where it is free
-        sin_a1 = across_a1/length_a1 if reach > 1e-11*machine_scale else sin(free_a1)
+        sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
+        if reach > 1e-11*machine_scale:
+            arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
+            arm_across_a1 = link_length_2*sin_a2_from_a1
+            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*y - arm_across_a1*x
+            length_a1 = (
+                sqrt(across_a1*across_a1 + along_a1*along_a1)
+                if across_a1*across_a1 + along_a1*along_a1 > 0.0
+                else 1.0
+            )
+            cos_a1 = along_a1/length_a1  # its reference where it is free
+            sin_a1 = across_a1/length_a1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_a1 = cos(free_a1)  # its reference where it is free
+            sin_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         cos_a2 = cos_a1*cos_a2_from_a1 - sin_a1*sin_a2_from_a1  # a2: what the sum a2_from_a1 leaves
         sin_a2 = cos_a1*sin_a2_from_a1 + cos_a2_from_a1*sin_a1
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
     def _limits(self, axes: Reals) -> Status:
@@ -436,7 +452,7 @@ class PCC(OffsetKinematics):
             return Status.UNREACHABLE
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
-        reach = root(flange_x*flange_x + flange_y*flange_y)
+        reach = sqrt(flange_x*flange_x + flange_y*flange_y)
         # kept as a product
         sine_square_a2_from_a1 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -446,28 +462,36 @@ class PCC(OffsetKinematics):
         # out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return Status.UNREACHABLE
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-        sin_a2_from_a1 = root(sine_square_a2_from_a1)*sigma_elbow
-        arm_across_a1 = link_length_2*sin_a2_from_a1
-        along_a1 = arm_across_a1*flange_y + arm_along_a1*flange_x  # a1: linear pair in the x and y equations
-        across_a1 = arm_along_a1*flange_y - arm_across_a1*flange_x
-        length_a1 = (
-            root(across_a1*across_a1 + along_a1*along_a1)
-            if (reach > 1e-11*machine_scale) and (across_a1*across_a1 + along_a1*along_a1 > 0.0)
-            else 1.0
-        )
-        cos_a1 = along_a1/length_a1 if reach > 1e-11*machine_scale else cos(free_a1)  # its reference where it is free
-        sin_a1 = across_a1/length_a1 if reach > 1e-11*machine_scale else sin(free_a1)
+        sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
+        if reach > 1e-11*machine_scale:
+            arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
+            arm_across_a1 = link_length_2*sin_a2_from_a1
+            along_a1 = arm_across_a1*flange_y + arm_along_a1*flange_x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*flange_y - arm_across_a1*flange_x
+            length_a1 = (
+                sqrt(across_a1*across_a1 + along_a1*along_a1)
+                if across_a1*across_a1 + along_a1*along_a1 > 0.0
+                else 1.0
+            )
+            cos_a1 = along_a1/length_a1  # its reference where it is free
+            sin_a1 = across_a1/length_a1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_a1 = cos(free_a1)  # its reference where it is free
+            sin_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         cos_a2 = cos_a1*cos_a2_from_a1 - sin_a1*sin_a2_from_a1  # a2: what the sum a2_from_a1 leaves
         sin_a2 = cos_a1*sin_a2_from_a1 + cos_a2_from_a1*sin_a1
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         return (axis_a1, axis_a2)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -483,6 +507,15 @@ class PCC(OffsetKinematics):
         a2 = DEGREE*(axis_a2 - offset_a2)
         sin_a2_from_a1 = -sin(a1 - a2)
         return (sin_a2_from_a1,)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

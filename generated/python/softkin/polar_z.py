@@ -33,8 +33,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Mechanism, Pose
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.polar_z import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -73,7 +74,7 @@ class PolarZ(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Polar_Z"
     AXES = (
@@ -158,6 +159,12 @@ class PolarZ(Mechanism):
             offset_c, offset_r, offset_z, lower_c, upper_c, lower_r, upper_r, lower_z, upper_z, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_c=-1e12, lowest_r=-1e12, lowest_z=-1e12, highest_c=1e12, highest_r=1e12, highest_z=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, offset_c: float, offset_r: float, offset_z: float, lower_c: float, upper_c: float, lower_r: float,
@@ -275,14 +282,19 @@ class PolarZ(Mechanism):
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_c) <= 1e9):
             return Status.BAD_INPUT
-        free_c = (ref_c - offset_c)*DEGREE
-        radius_c = root(x*x + y*y)  # c: direction and distance of a point
-        length_c = radius_c if radius_c > 1e-11*machine_scale else 1.0
-        cos_c = x/length_c if radius_c > 1e-11*machine_scale else cos(free_c)  # its reference where it is free
-        sin_c = y/length_c if radius_c > 1e-11*machine_scale else sin(free_c)
+        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        if radius_c > 1e-11*machine_scale:
+            cos_c = x/radius_c  # its reference where it is free
+            sin_c = y/radius_c
+        else:
+            free_c = (ref_c - offset_c)*DEGREE
+            cos_c = cos(free_c)  # its reference where it is free
+            sin_c = sin(free_c)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
-        axis_c = nearest_period(offset_c + atan2(sin_c, cos_c)/DEGREE, near_c)  # C: its turn
+        axis_c = offset_c + arctan2(sin_c, cos_c + 0.0)/DEGREE  # C: its turn
+        if not -180.000000001 <= axis_c - near_c < 179.999999999:
+            axis_c = nearest_period(axis_c, near_c)
         axis_r = offset_r + radius_c
         axis_z = offset_z + z
         return (axis_c, axis_r, axis_z)
@@ -327,7 +339,7 @@ class PolarZ(Mechanism):
         x = r*cos_c
         sin_c = sin(c)
         y = r*sin_c
-        radius_c = root(x*x + y*y)  # c: direction and distance of a point
+        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         margin_free_c = radius_c/machine_scale
         return (margin_free_c,)
 
@@ -377,6 +389,15 @@ class PolarZ(Mechanism):
             (0.0, 0.0, 0.0),
             (1.0, 0.0, 0.0),
         )
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -36,8 +36,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.pos_rrr import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -88,7 +89,7 @@ class PosRRR(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Pos_RRR"
     AXES = (
@@ -209,6 +210,12 @@ class PosRRR(OffsetKinematics):
             upper_a3, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, d1: float, a1: float, a2: float, d3: float, a3: float, d4: float, offset_a1: float,
@@ -280,7 +287,7 @@ class PosRRR(OffsetKinematics):
         single_a3 = 1.0 if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 360.0) else 0.0
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         machine_scale = a1 + a2 + a3 + d4  # a length of the machine
-        effective_q3_2 = root(a3*a3 + d4*d4)  # effective length that the angle turns
+        effective_q3_2 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
         swing_scale_q3_2 = 2.0*a2*effective_q3_2  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         return Constants(
             d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
@@ -406,22 +413,25 @@ class PosRRR(OffsetKinematics):
             and abs(ref_a3) <= 1e9
         ):
             return Status.BAD_INPUT
-        distance_q1 = root(x*x + y*y)  # q1: of the point from its axis
+        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # out of reach
         if not (sine_square_q1 >= -1e-12):
             return Status.UNREACHABLE
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1 = root(sine_square_q1)*sigma_arm
-        # its reference where it is free
-        cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1 if distance_q1 > 1e-11*machine_scale else cos(free_a1)
-        sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1 if distance_q1 > 1e-11*machine_scale else sin(free_a1)
+        if distance_q1 > 1e-11*machine_scale:
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
+            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1 = cos(free_a1)  # its reference where it is free
+            sin_q1 = sin(free_a1)
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
             (effective_q3_2 + reach - a2)*(a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)
@@ -430,32 +440,42 @@ class PosRRR(OffsetKinematics):
         # out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
-        sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
+        sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
         sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
-        arm_along_q2 = d4*cos_q3 - a3*sin_q3
-        arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        length_q2 = (
-            root(across_q2*across_q2 + along_q2*along_q2)
-            if (reach > 1e-11*machine_scale) and (across_q2*across_q2 + along_q2*along_q2 > 0.0)
-            else 1.0
-        )
-        cos_q2 = along_q2/length_q2 if reach > 1e-11*machine_scale else cos(free_a2)  # its reference where it is free
-        sin_q2 = across_q2/length_q2 if reach > 1e-11*machine_scale else sin(free_a2)
+        if reach > 1e-11*machine_scale:
+            arm_along_q2 = d4*cos_q3 - a3*sin_q3
+            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+            length_q2 = (
+                sqrt(across_q2*across_q2 + along_q2*along_q2)
+                if across_q2*across_q2 + along_q2*along_q2 > 0.0
+                else 1.0
+            )
+            cos_q2 = along_q2/length_q2  # its reference where it is free
+            sin_q2 = across_q2/length_q2
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2 = cos(free_a2)  # its reference where it is free
+            sin_q2 = sin(free_a2)
+        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
     def _limits(self, axes: Reals) -> Status:
@@ -652,7 +672,7 @@ class PosRRR(OffsetKinematics):
         ):
             return Status.BAD_INPUT
         tool_z = d3 + point_y  # the point seen from the last moving joint
-        distance_q1 = root(x*x + y*y)  # q1: of the point from its axis
+        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 + tool_z)*(distance_q1 - tool_z)/(divisor_q1*divisor_q1)  # kept as a product
@@ -661,19 +681,22 @@ class PosRRR(OffsetKinematics):
             return Status.UNREACHABLE
         tool_x = a3 + point_x  # the point seen from the last moving joint
         tool_y = -d4 - point_z  # the point seen from the last moving joint
-        effective_q3 = root(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
+        effective_q3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_q3 > 1e-9*a2):
             return Status.UNREACHABLE
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -tool_z/divisor_q1
-        sin_swing_q1 = root(sine_square_q1)*sigma_arm
-        # its reference where it is free
-        cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1 if distance_q1 > 1e-11*machine_scale else cos(free_a1)
-        sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1 if distance_q1 > 1e-11*machine_scale else sin(free_a1)
+        if distance_q1 > 1e-11*machine_scale:
+            cos_swing_q1 = -tool_z/divisor_q1
+            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
+            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1 = cos(free_a1)  # its reference where it is free
+            sin_q1 = sin(free_a1)
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         divisor_q3 = effective_q3 if effective_q3 > 1e-9*a2 else 1.0
         swing_scale_q3 = 2.0*a2*divisor_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         # kept as a product
@@ -684,32 +707,42 @@ class PosRRR(OffsetKinematics):
         # out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_swing_q3 = (reach*reach - a2*a2 - divisor_q3*divisor_q3)/swing_scale_q3
-        sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
+        sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         cos_q3 = tool_x*cos_swing_q3/divisor_q3 + tool_y*sin_swing_q3/divisor_q3
         sin_q3 = tool_x*sin_swing_q3/divisor_q3 - tool_y*cos_swing_q3/divisor_q3
-        arm_along_q2 = tool_y*cos_q3 + tool_x*sin_q3
-        arm_across_q2 = a2 + tool_x*cos_q3 - tool_y*sin_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2 = arm_across_q2*wrist_y_from_q1 - arm_along_q2*wrist_x_from_q1
-        across_q2 = -arm_across_q2*wrist_x_from_q1 - arm_along_q2*wrist_y_from_q1
-        length_q2 = (
-            root(across_q2*across_q2 + along_q2*along_q2)
-            if (reach > 1e-11*machine_scale) and (across_q2*across_q2 + along_q2*along_q2 > 0.0)
-            else 1.0
-        )
-        cos_q2 = along_q2/length_q2 if reach > 1e-11*machine_scale else cos(free_a2)  # its reference where it is free
-        sin_q2 = across_q2/length_q2 if reach > 1e-11*machine_scale else sin(free_a2)
+        if reach > 1e-11*machine_scale:
+            arm_along_q2 = tool_y*cos_q3 + tool_x*sin_q3
+            arm_across_q2 = a2 + tool_x*cos_q3 - tool_y*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2 = arm_across_q2*wrist_y_from_q1 - arm_along_q2*wrist_x_from_q1
+            across_q2 = -arm_across_q2*wrist_x_from_q1 - arm_along_q2*wrist_y_from_q1
+            length_q2 = (
+                sqrt(across_q2*across_q2 + along_q2*along_q2)
+                if across_q2*across_q2 + along_q2*along_q2 > 0.0
+                else 1.0
+            )
+            cos_q2 = along_q2/length_q2  # its reference where it is free
+            sin_q2 = across_q2/length_q2
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2 = cos(free_a2)  # its reference where it is free
+            sin_q2 = sin(free_a2)
+        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -764,6 +797,15 @@ class PosRRR(OffsetKinematics):
         tool_y = -d4 - point_z  # the point seen from the last moving joint
         branch_elbow = (-tool_y*cos_q3 - tool_x*sin_q3)/machine_scale
         return (branch_arm, branch_elbow)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -33,8 +33,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.scara2_z import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -78,7 +79,7 @@ class Scara2Z(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Scara2_Z"
     AXES = (
@@ -176,6 +177,12 @@ class Scara2Z(OffsetKinematics):
             lower_z, upper_z, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_z=-1e12, highest_a1=1e12, highest_a2=1e12, highest_z=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, arm_length_1: float, arm_length_2: float, offset_a1: float, offset_a2: float, offset_z: float,
@@ -309,7 +316,7 @@ class Scara2Z(OffsetKinematics):
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
             return Status.BAD_INPUT
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
@@ -318,26 +325,34 @@ class Scara2Z(OffsetKinematics):
         # out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
-        arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-        sin_a2 = root(sine_square_a2)*sigma_elbow
-        arm_across_a1 = arm_length_2*sin_a2
-        along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-        across_a1 = arm_along_a1*y - arm_across_a1*x
-        length_a1 = (
-            root(across_a1*across_a1 + along_a1*along_a1)
-            if (reach > 1e-11*machine_scale) and (across_a1*across_a1 + along_a1*along_a1 > 0.0)
-            else 1.0
-        )
-        cos_a1 = along_a1/length_a1 if reach > 1e-11*machine_scale else cos(free_a1)  # its reference where it is free
-        sin_a1 = across_a1/length_a1 if reach > 1e-11*machine_scale else sin(free_a1)
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
+        if reach > 1e-11*machine_scale:
+            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
+            arm_across_a1 = arm_length_2*sin_a2
+            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*y - arm_across_a1*x
+            length_a1 = (
+                sqrt(across_a1*across_a1 + along_a1*along_a1)
+                if across_a1*across_a1 + along_a1*along_a1 > 0.0
+                else 1.0
+            )
+            cos_a1 = along_a1/length_a1  # its reference where it is free
+            sin_a1 = across_a1/length_a1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_a1 = cos(free_a1)  # its reference where it is free
+            sin_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         axis_z = offset_z + z
         return (axis_a1, axis_a2, axis_z)
 
@@ -454,11 +469,11 @@ class Scara2Z(OffsetKinematics):
         ):
             return Status.BAD_INPUT
         tool_x = arm_length_2 + point_x  # the point seen from the last moving joint
-        effective_a2 = root(point_y*point_y + tool_x*tool_x)  # effective length that the angle turns
+        effective_a2 = sqrt(point_y*point_y + tool_x*tool_x)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a2 > 1e-9*arm_length_1):
             return Status.UNREACHABLE
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*arm_length_1 else 1.0
         swing_scale_a2 = 2.0*arm_length_1*divisor_a2  # a2: law of cosines in the x² + y² equation
         # kept as a product
@@ -469,28 +484,36 @@ class Scara2Z(OffsetKinematics):
         # out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_swing_a2 = (reach*reach - arm_length_1*arm_length_1 - divisor_a2*divisor_a2)/swing_scale_a2
-        sin_swing_a2 = root(sine_square_a2)*sigma_elbow
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
         cos_a2 = tool_x*cos_swing_a2/divisor_a2 + point_y*sin_swing_a2/divisor_a2
         sin_a2 = tool_x*sin_swing_a2/divisor_a2 - point_y*cos_swing_a2/divisor_a2
-        arm_along_a1 = arm_length_1 + tool_x*cos_a2 - point_y*sin_a2
-        arm_across_a1 = point_y*cos_a2 + tool_x*sin_a2
-        along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-        across_a1 = arm_along_a1*y - arm_across_a1*x
-        length_a1 = (
-            root(across_a1*across_a1 + along_a1*along_a1)
-            if (reach > 1e-11*machine_scale) and (across_a1*across_a1 + along_a1*along_a1 > 0.0)
-            else 1.0
-        )
-        cos_a1 = along_a1/length_a1 if reach > 1e-11*machine_scale else cos(free_a1)  # its reference where it is free
-        sin_a1 = across_a1/length_a1 if reach > 1e-11*machine_scale else sin(free_a1)
+        if reach > 1e-11*machine_scale:
+            arm_along_a1 = arm_length_1 + tool_x*cos_a2 - point_y*sin_a2
+            arm_across_a1 = point_y*cos_a2 + tool_x*sin_a2
+            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*y - arm_across_a1*x
+            length_a1 = (
+                sqrt(across_a1*across_a1 + along_a1*along_a1)
+                if across_a1*across_a1 + along_a1*along_a1 > 0.0
+                else 1.0
+            )
+            cos_a1 = along_a1/length_a1  # its reference where it is free
+            sin_a1 = across_a1/length_a1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_a1 = cos(free_a1)  # its reference where it is free
+            sin_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         joint_z = z - point_z  # joint_z: affine in the z equation
         axis_z = joint_z + offset_z
         return (axis_a1, axis_a2, axis_z)
@@ -515,6 +538,15 @@ class Scara2Z(OffsetKinematics):
         tool_x = arm_length_2 + point_x  # the point seen from the last moving joint
         branch_elbow = (point_y*cos_a2 + tool_x*sin_a2)/machine_scale
         return (branch_elbow,)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

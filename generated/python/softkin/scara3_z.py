@@ -36,9 +36,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.scara3_z import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -91,7 +92,7 @@ class Scara3Z(TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Scara3_Z"
     AXES = (
@@ -212,6 +213,13 @@ class Scara3Z(TwistChoice):
             lower_a2, upper_a2, lower_a3, upper_a3, lower_z, upper_z, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_z=-1e12, highest_a1=1e12, highest_a2=1e12,
+                highest_a3=1e12, highest_z=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, arm_length_1: float, arm_length_2: float, arm_length_3: float, offset_a1: float, offset_a2: float,
@@ -395,7 +403,7 @@ class Scara3Z(TwistChoice):
             return Status.BAD_INPUT
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
@@ -404,7 +412,7 @@ class Scara3Z(TwistChoice):
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
@@ -413,33 +421,43 @@ class Scara3Z(TwistChoice):
         # out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
-        arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-        sin_a2 = root(sine_square_a2)*sigma_elbow
-        arm_across_a1 = arm_length_2*sin_a2
-        along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
-        across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-        length_a1 = (
-            root(across_a1*across_a1 + along_a1*along_a1)
-            if (reach > 1e-11*machine_scale) and (across_a1*across_a1 + along_a1*along_a1 > 0.0)
-            else 1.0
-        )
-        cos_a1 = along_a1/length_a1 if reach > 1e-11*machine_scale else cos(free_a1)  # its reference where it is free
-        sin_a1 = across_a1/length_a1 if reach > 1e-11*machine_scale else sin(free_a1)
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
+        if reach > 1e-11*machine_scale:
+            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
+            arm_across_a1 = arm_length_2*sin_a2
+            along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
+            length_a1 = (
+                sqrt(across_a1*across_a1 + along_a1*along_a1)
+                if across_a1*across_a1 + along_a1*along_a1 > 0.0
+                else 1.0
+            )
+            cos_a1 = along_a1/length_a1  # its reference where it is free
+            sin_a1 = across_a1/length_a1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_a1 = cos(free_a1)  # its reference where it is free
+            sin_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
         sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
         cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
         sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         axis_z = offset_z + z
         return (axis_a1, axis_a2, axis_a3, axis_z)
 
@@ -578,7 +596,7 @@ class Scara3Z(TwistChoice):
             return Status.BAD_INPUT
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
@@ -586,6 +604,15 @@ class Scara3Z(TwistChoice):
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

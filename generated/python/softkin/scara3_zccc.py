@@ -40,9 +40,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.scara3_zccc import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -95,7 +96,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Scara3_ZCCC"
     AXES = (
@@ -216,6 +217,13 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             upper_a1, lower_a2, upper_a2, lower_a3, upper_a3, lower_a4, upper_a4, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, highest_a1=1e12, highest_a2=1e12,
+                highest_a3=1e12, highest_a4=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, link_length_1: float, link_length_2: float, link_length_3: float, offset_a1: float,
@@ -399,7 +407,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
@@ -408,7 +416,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -417,34 +425,44 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # out of reach
         if not (sine_square_a3 >= -1e-12):
             return Status.UNREACHABLE
-        axis_a1 = offset_a1 + z
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
-        arm_along_a2 = link_length_1 + link_length_2*cos_a3
-        sin_a3 = root(sine_square_a3)*sigma_elbow
-        arm_across_a2 = link_length_2*sin_a3
-        along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
-        across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-        length_a2 = (
-            root(across_a2*across_a2 + along_a2*along_a2)
-            if (reach > 1e-11*machine_scale) and (across_a2*across_a2 + along_a2*along_a2 > 0.0)
-            else 1.0
-        )
-        cos_a2 = along_a2/length_a2 if reach > 1e-11*machine_scale else cos(free_a2)  # its reference where it is free
-        sin_a2 = across_a2/length_a2 if reach > 1e-11*machine_scale else sin(free_a2)
+        sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
+        if reach > 1e-11*machine_scale:
+            arm_along_a2 = link_length_1 + link_length_2*cos_a3
+            arm_across_a2 = link_length_2*sin_a3
+            along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
+            across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
+            length_a2 = (
+                sqrt(across_a2*across_a2 + along_a2*along_a2)
+                if across_a2*across_a2 + along_a2*along_a2 > 0.0
+                else 1.0
+            )
+            cos_a2 = along_a2/length_a2  # its reference where it is free
+            sin_a2 = across_a2/length_a2
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_a2 = cos(free_a2)  # its reference where it is free
+            sin_a2 = sin(free_a2)
+        axis_a1 = offset_a1 + z
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         cos_a23 = cos_a2*cos_a3 - sin_a2*sin_a3
         sin_a23 = cos_a2*sin_a3 + cos_a3*sin_a2
         cos_a4 = cos_a23*cos_heading + sin_a23*sin_heading  # a4: what the sum a234 leaves
         sin_a4 = cos_a23*sin_heading - cos_heading*sin_a23
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_a4, cos_a4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4 + 0.0)/DEGREE  # A4: its turn
+        if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
+            axis_a4 = nearest_period(axis_a4, near_a4)
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
     def _limits(self, axes: Reals) -> Status:
@@ -582,7 +600,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
@@ -625,11 +643,11 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # the point seen from the last moving joint
         tool_x = link_length_2 + link_length_3*cos_a4 + point_x*cos_a4 - point_y*sin_a4
         tool_y = point_y*cos_a4 + link_length_3*sin_a4 + point_x*sin_a4  # the point seen from the last moving joint
-        effective_a3 = root(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
+        effective_a3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a3 > 1e-9*link_length_1):
             return Status.UNREACHABLE
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*link_length_1 else 1.0
         swing_scale_a3 = 2.0*divisor_a3*link_length_1  # a3: law of cosines in the x² + y² equation
         # kept as a product
@@ -640,30 +658,38 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # out of reach
         if not (sine_square_a3 >= -1e-12):
             return Status.UNREACHABLE
-        a1 = z - point_z  # a1: affine in the z equation
-        axis_a1 = a1 + offset_a1
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_swing_a3 = (reach*reach - divisor_a3*divisor_a3 - link_length_1*link_length_1)/swing_scale_a3
-        sin_swing_a3 = root(sine_square_a3)*sigma_elbow
+        sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
         cos_a3 = tool_x*cos_swing_a3/divisor_a3 + tool_y*sin_swing_a3/divisor_a3
         sin_a3 = tool_x*sin_swing_a3/divisor_a3 - tool_y*cos_swing_a3/divisor_a3
-        arm_along_a2 = link_length_1 + tool_x*cos_a3 - tool_y*sin_a3
-        arm_across_a2 = tool_y*cos_a3 + tool_x*sin_a3
-        along_a2 = arm_across_a2*y + arm_along_a2*x  # a2: linear pair in the x and y equations
-        across_a2 = arm_along_a2*y - arm_across_a2*x
-        length_a2 = (
-            root(across_a2*across_a2 + along_a2*along_a2)
-            if (reach > 1e-11*machine_scale) and (across_a2*across_a2 + along_a2*along_a2 > 0.0)
-            else 1.0
-        )
-        cos_a2 = along_a2/length_a2 if reach > 1e-11*machine_scale else cos(free_a2)  # its reference where it is free
-        sin_a2 = across_a2/length_a2 if reach > 1e-11*machine_scale else sin(free_a2)
+        if reach > 1e-11*machine_scale:
+            arm_along_a2 = link_length_1 + tool_x*cos_a3 - tool_y*sin_a3
+            arm_across_a2 = tool_y*cos_a3 + tool_x*sin_a3
+            along_a2 = arm_across_a2*y + arm_along_a2*x  # a2: linear pair in the x and y equations
+            across_a2 = arm_along_a2*y - arm_across_a2*x
+            length_a2 = (
+                sqrt(across_a2*across_a2 + along_a2*along_a2)
+                if across_a2*across_a2 + along_a2*along_a2 > 0.0
+                else 1.0
+            )
+            cos_a2 = along_a2/length_a2  # its reference where it is free
+            sin_a2 = across_a2/length_a2
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_a2 = cos(free_a2)  # its reference where it is free
+            sin_a2 = sin(free_a2)
+        a1 = z - point_z  # a1: affine in the z equation
+        axis_a1 = a1 + offset_a1
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3, ref_a4)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -693,6 +719,15 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         tool_y = point_y*cos_a4 + link_length_3*sin_a4 + point_x*sin_a4  # the point seen from the last moving joint
         branch_elbow = (tool_y*cos_a3 + tool_x*sin_a3)/machine_scale
         return (branch_elbow,)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -42,9 +42,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.sccc import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -104,7 +105,7 @@ class SCCC(OffsetKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_SCCC"
     AXES = (
@@ -247,6 +248,13 @@ class SCCC(OffsetKinematics, TwistChoice):
             lower_joint_3, upper_joint_3, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_joint_2=-1e12, lowest_joint_3=-1e12,
+                highest_a1=1e12, highest_a2=1e12, highest_a3=1e12, highest_joint_2=1e12, highest_joint_3=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, link_length_1: float, link_length_2: float, link_length_3: float, coupling_12: float,
@@ -475,7 +483,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
@@ -487,7 +495,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -498,47 +506,61 @@ class SCCC(OffsetKinematics, TwistChoice):
             return Status.UNREACHABLE
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2
-        sin_a2 = root(sine_square_a2)*sigma_elbow
-        arm_across_a1 = link_length_2*sin_a2
-        along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
-        across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-        length_a1 = (
-            root(across_a1*across_a1 + along_a1*along_a1)
-            if (reach > 1e-11*machine_scale) and (across_a1*across_a1 + along_a1*along_a1 > 0.0)
-            else 1.0
-        )
-        cos_a1 = along_a1/length_a1 if reach > 1e-11*machine_scale else cos(free_a1)  # its reference where it is free
-        sin_a1 = across_a1/length_a1 if reach > 1e-11*machine_scale else sin(free_a1)
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
+        if reach > 1e-11*machine_scale:
+            arm_along_a1 = link_length_1 + link_length_2*cos_a2
+            arm_across_a1 = link_length_2*sin_a2
+            along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
+            length_a1 = (
+                sqrt(across_a1*across_a1 + along_a1*along_a1)
+                if across_a1*across_a1 + along_a1*along_a1 > 0.0
+                else 1.0
+            )
+            cos_a1 = along_a1/length_a1  # its reference where it is free
+            sin_a1 = across_a1/length_a1
+        else:
+            cos_a1 = cos(free_a1)  # its reference where it is free
+            sin_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
         ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-        free_a2 = ref_motor_a2 + coupling_12*free_a1
-        # A2: where its turn is open
-        open_a2 = mid_a2 if single_a2 > 0.0 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        # A2: its turn
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE - coupling_12*motor_a1/DEGREE, near_a2)
+        if abs(turn_a2) > 0.0:
+            near_a2 = 360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2
+        else:
+            free_a2 = ref_motor_a2 + coupling_12*free_a1
+            # A2: where its turn is open
+            open_a2 = mid_a2 if single_a2 > 0.0 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
+            near_a2 = open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
+        motor_a2 = DEGREE*(axis_a2 - offset_a2)
+        if abs(turn_a3) > 0.0:
+            near_a3 = 360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3
+        else:
+            if single_a3 > 0.0:
+                open_a3 = mid_a3  # A3: where its turn is open
+            else:
+                ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
+                free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
+                # A3: where its turn is open
+                open_a3 = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE
+            near_a3 = open_a3
         cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
         sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
         cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
         sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
-        motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
-        free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-        # A3: where its turn is open
-        open_a3 = (
-            mid_a3
-            if single_a3 > 0.0
-            else offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE
-        )
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
         # A3: its turn
-        axis_a3 = nearest_period(
-            offset_a3 + atan2(sin_a3, cos_a3)/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE, near_a3,
+        axis_a3 = (
+            offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
         )
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
     def _limits(self, axes: Reals) -> Status:
@@ -727,7 +749,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             return Status.BAD_INPUT
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
@@ -778,11 +800,11 @@ class SCCC(OffsetKinematics, TwistChoice):
         # the point seen from the last moving joint
         tool_x = link_length_2 + link_length_3*cos_a3 + point_x*cos_a3 - point_y*sin_a3
         tool_y = point_y*cos_a3 + link_length_3*sin_a3 + point_x*sin_a3  # the point seen from the last moving joint
-        effective_a2 = root(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
+        effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a2 > 1e-9*link_length_1):
             return Status.UNREACHABLE
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_1 else 1.0
         swing_scale_a2 = 2.0*divisor_a2*link_length_1  # a2: law of cosines in the x² + y² equation
         # kept as a product
@@ -794,30 +816,40 @@ class SCCC(OffsetKinematics, TwistChoice):
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a2 = (reach*reach - divisor_a2*divisor_a2 - link_length_1*link_length_1)/swing_scale_a2
-        sin_swing_a2 = root(sine_square_a2)*sigma_elbow
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
         cos_a2 = tool_x*cos_swing_a2/divisor_a2 + tool_y*sin_swing_a2/divisor_a2
         sin_a2 = tool_x*sin_swing_a2/divisor_a2 - tool_y*cos_swing_a2/divisor_a2
-        arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
-        arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
-        along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-        across_a1 = arm_along_a1*y - arm_across_a1*x
-        length_a1 = (
-            root(across_a1*across_a1 + along_a1*along_a1)
-            if (reach > 1e-11*machine_scale) and (across_a1*across_a1 + along_a1*along_a1 > 0.0)
-            else 1.0
-        )
-        cos_a1 = along_a1/length_a1 if reach > 1e-11*machine_scale else cos(free_a1)  # its reference where it is free
-        sin_a1 = across_a1/length_a1 if reach > 1e-11*machine_scale else sin(free_a1)
+        if reach > 1e-11*machine_scale:
+            arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
+            arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
+            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*y - arm_across_a1*x
+            length_a1 = (
+                sqrt(across_a1*across_a1 + along_a1*along_a1)
+                if across_a1*across_a1 + along_a1*along_a1 > 0.0
+                else 1.0
+            )
+            cos_a1 = along_a1/length_a1  # its reference where it is free
+            sin_a1 = across_a1/length_a1
+        else:
+            cos_a1 = cos(free_a1)  # its reference where it is free
+            sin_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        free_a2 = ref_motor_a2 + coupling_12*free_a1
-        # A2: where its turn is open
-        open_a2 = mid_a2 if single_a2 > 0.0 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        # A2: its turn
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE - coupling_12*motor_a1/DEGREE, near_a2)
+        if abs(turn_a2) > 0.0:
+            near_a2 = 360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2
+        else:
+            free_a2 = ref_motor_a2 + coupling_12*free_a1
+            # A2: where its turn is open
+            open_a2 = mid_a2 if single_a2 > 0.0 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
+            near_a2 = open_a2
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         axis_a3 = offset_a3 + free_a3/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
         return (axis_a1, axis_a2, axis_a3)
@@ -856,6 +888,15 @@ class SCCC(OffsetKinematics, TwistChoice):
         tool_y = point_y*cos_a3 + link_length_3*sin_a3 + point_x*sin_a3  # the point seen from the last moving joint
         branch_elbow = (tool_y*cos_a2 + tool_x*sin_a2)/machine_scale
         return (branch_elbow,)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

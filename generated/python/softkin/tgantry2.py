@@ -30,7 +30,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._types import Axis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.tgantry2 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -71,7 +72,7 @@ class TGantry2(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_TGantry2"
     AXES = (
@@ -162,6 +163,13 @@ class TGantry2(OffsetKinematics):
             offset_a, offset_b, lower_a, upper_a, lower_b, upper_b, lower_x, upper_x, lower_y, upper_y, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a=-1e12, lowest_b=-1e12, lowest_x=-1e12, lowest_y=-1e12, highest_a=1e12, highest_b=1e12,
+                highest_x=1e12, highest_y=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, offset_a: float, offset_b: float, lower_a: float, upper_a: float, lower_b: float, upper_b: float,
@@ -358,6 +366,15 @@ class TGantry2(OffsetKinematics):
         if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
             return Status.BAD_INPUT
         return ()
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -30,8 +30,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
-from softkin._scalar import root
-from softkin._types import Axis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import sqrt
+from softkin._types import Axis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.tool import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
@@ -53,7 +54,7 @@ class Tool(OrientationKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Tool"
     AXES = ()
@@ -98,6 +99,7 @@ class Tool(OrientationKinematics):
         """
         values = self._accept(tool_x, tool_y, tool_z, check_limits)
         self._constants = self._setup(*values)
+        self._unrolled = unrolled(self._constants)
 
     def _setup(self, tool_x: float, tool_y: float, tool_z: float, check_limits: float) -> Constants:
         """The constants of the machine."""
@@ -159,7 +161,7 @@ class Tool(OrientationKinematics):
         # what the flange holds, along the axis that it turns about
         flange_along = flange_axis_x*tool_x + flange_axis_y*tool_y + flange_axis_z*tool_z
         # off the axis that the flange turns about
-        flange_offset = root(
+        flange_offset = sqrt(
             (tool_x - flange_along*flange_axis_x)*(tool_x - flange_along*flange_axis_x)
             + (tool_y - flange_along*flange_axis_y)*(tool_y - flange_along*flange_axis_y)
             + (tool_z - flange_along*flange_axis_z)*(tool_z - flange_along*flange_axis_z)
@@ -215,6 +217,15 @@ class Tool(OrientationKinematics):
             (flange_axis_x, flange_axis_y, flange_axis_z),
             0.0,
         )
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

@@ -37,8 +37,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, cos, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, cos, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.tripod_linear import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -86,7 +87,7 @@ class TripodLinear(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Tripod_Linear"
     AXES = (
@@ -224,6 +225,12 @@ class TripodLinear(OffsetKinematics):
             lower_a1, upper_a1, lower_a2, upper_a2, lower_a3, upper_a3, tcp_below, min_type2_margin, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, outer_radius: float, inner_radius: float, arm_length: float, rail_angle: float,
@@ -527,13 +534,13 @@ class TripodLinear(OffsetKinematics):
         if not (root_square_a3 >= -1e-12*arm_length*arm_length):
             return Status.UNREACHABLE
         middle_a1 = z*cos_rail_angle + span_1_x*sin_rail_angle
-        a1 = root(root_square_a1)*sigma_carriage_1 - middle_a1
+        a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
         pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
         middle_a2 = 0.5*span_2_x*sin_rail_angle - z*cos_rail_angle - 0.5*root(3.0)*span_2_y*sin_rail_angle
-        a2 = middle_a2 + root(root_square_a2)*sigma_carriage_2
+        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         pivot_2_x = 0.5*outer_radius + 0.5*a2*sin_rail_angle - 0.5*inner_radius  # rod 2
         rod_2_x = x - pivot_2_x
         pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
@@ -541,7 +548,7 @@ class TripodLinear(OffsetKinematics):
         pivot_2_z = -a2*cos_rail_angle  # rod 2
         rod_2_z = z - pivot_2_z
         middle_a3 = 0.5*span_2_x*sin_rail_angle + 0.5*root(3.0)*span_3_y*sin_rail_angle - z*cos_rail_angle
-        a3 = middle_a3 + root(root_square_a3)*sigma_carriage_3
+        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         pivot_3_x = 0.5*outer_radius + 0.5*a3*sin_rail_angle - 0.5*inner_radius  # rod 3
         rod_3_x = x - pivot_3_x
         pivot_3_y = 0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3*sin_rail_angle - 0.5*root(3.0)*inner_radius  # rod 3
@@ -890,13 +897,13 @@ class TripodLinear(OffsetKinematics):
         if not (root_square_a3 >= -1e-12*arm_length*arm_length):
             return Status.UNREACHABLE
         middle_a1 = flange_z*cos_rail_angle + span_1_x*sin_rail_angle
-        a1 = root(root_square_a1)*sigma_carriage_1 - middle_a1
+        a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
         pivot_1_x = inner_radius - outer_radius - a1*sin_rail_angle  # rod 1
         rod_1_x = flange_x - pivot_1_x
         pivot_1_z = -a1*cos_rail_angle  # rod 1
         rod_1_z = flange_z - pivot_1_z
         middle_a2 = 0.5*span_2_x*sin_rail_angle - flange_z*cos_rail_angle - 0.5*root(3.0)*span_2_y*sin_rail_angle
-        a2 = middle_a2 + root(root_square_a2)*sigma_carriage_2
+        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         pivot_2_x = 0.5*outer_radius + 0.5*a2*sin_rail_angle - 0.5*inner_radius  # rod 2
         rod_2_x = flange_x - pivot_2_x
         pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
@@ -904,7 +911,7 @@ class TripodLinear(OffsetKinematics):
         pivot_2_z = -a2*cos_rail_angle  # rod 2
         rod_2_z = flange_z - pivot_2_z
         middle_a3 = 0.5*span_2_x*sin_rail_angle + 0.5*root(3.0)*span_3_y*sin_rail_angle - flange_z*cos_rail_angle
-        a3 = middle_a3 + root(root_square_a3)*sigma_carriage_3
+        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         pivot_3_x = 0.5*outer_radius + 0.5*a3*sin_rail_angle - 0.5*inner_radius  # rod 3
         rod_3_x = flange_x - pivot_3_x
         pivot_3_y = 0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3*sin_rail_angle - 0.5*root(3.0)*inner_radius  # rod 3
@@ -1017,6 +1024,15 @@ class TripodLinear(OffsetKinematics):
             /arm_length
         )
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

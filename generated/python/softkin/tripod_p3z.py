@@ -37,8 +37,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import root
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import root, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.tripod_p3z import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -97,7 +98,7 @@ class TripodP3Z(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Tripod_P3Z"
     AXES = (
@@ -241,6 +242,12 @@ class TripodP3Z(OffsetKinematics):
             min_type2_margin, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, arm_length: float, tcp_displacement: float, rail_x_1: float, rail_y_1: float, rail_x_2: float,
@@ -291,17 +298,17 @@ class TripodP3Z(OffsetKinematics):
                 "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",
                 min_type2_margin=min_type2_margin,
             )
-        if not (root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) > tcp_displacement):
+        if not (sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) > tcp_displacement):
             raise self._refusal(
                 "rail 1 must be farther from the origin than tcp_displacement", tcp_displacement=tcp_displacement,
                 rail_x_1=rail_x_1, rail_y_1=rail_y_1,
             )
-        if not (root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) > tcp_displacement):
+        if not (sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) > tcp_displacement):
             raise self._refusal(
                 "rail 2 must be farther from the origin than tcp_displacement", tcp_displacement=tcp_displacement,
                 rail_x_2=rail_x_2, rail_y_2=rail_y_2,
             )
-        if not (root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) > tcp_displacement):
+        if not (sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) > tcp_displacement):
             raise self._refusal(
                 "rail 3 must be farther from the origin than tcp_displacement", tcp_displacement=tcp_displacement,
                 rail_x_3=rail_x_3, rail_y_3=rail_y_3,
@@ -588,15 +595,15 @@ class TripodP3Z(OffsetKinematics):
         lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
         machine_scale = arm_length + tcp_displacement  # a length of the machine
-        pivot_1_y = rail_y_1 - rail_y_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)  # rod 1
-        pivot_2_y = rail_y_2 - rail_y_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)  # rod 2
+        pivot_1_y = rail_y_1 - rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)  # rod 1
+        pivot_2_y = rail_y_2 - rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)  # rod 2
         apart_2_y = pivot_2_y - pivot_1_y
-        pivot_3_y = rail_y_3 - rail_y_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)  # rod 3
+        pivot_3_y = rail_y_3 - rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)  # rod 3
         apart_3_y = pivot_3_y - pivot_1_y
-        pivot_1_x = rail_x_1 - rail_x_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)  # rod 1
-        pivot_2_x = rail_x_2 - rail_x_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)  # rod 2
+        pivot_1_x = rail_x_1 - rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)  # rod 1
+        pivot_2_x = rail_x_2 - rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        pivot_3_x = rail_x_3 - rail_x_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)  # rod 3
+        pivot_3_x = rail_x_3 - rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3)  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_z = apart_2_x*apart_3_y - apart_2_y*apart_3_x
         # assembly mode of this machine
@@ -772,22 +779,22 @@ class TripodP3Z(OffsetKinematics):
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return Status.BAD_INPUT
-        span_1_x = x + rail_x_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
-        span_1_y = y + rail_y_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
+        span_1_x = x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
+        span_1_y = y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
         if not (root_square_a1 >= -1e-12*arm_length*arm_length):
             return Status.UNREACHABLE
-        span_2_x = x + rail_x_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
-        span_2_y = y + rail_y_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
+        span_2_x = x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
+        span_2_y = y + rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
         if not (root_square_a2 >= -1e-12*arm_length*arm_length):
             return Status.UNREACHABLE
-        span_3_x = x + rail_x_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
-        span_3_y = y + rail_y_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
+        span_3_x = x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
+        span_3_y = y + rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
@@ -795,15 +802,15 @@ class TripodP3Z(OffsetKinematics):
             return Status.UNREACHABLE
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
-        a1 = z + root(root_square_a1)*sigma_carriage_1
+        a1 = z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
         rod_1_z = z - a1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        a2 = z + root(root_square_a2)*sigma_carriage_2
+        a2 = z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         rod_2_z = z - a2
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        a3 = z + root(root_square_a3)*sigma_carriage_3
+        a3 = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
             assembly_sign
@@ -993,16 +1000,16 @@ class TripodP3Z(OffsetKinematics):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
-        slope_1_by_x = 2.0*x - 2.0*(1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+        slope_1_by_x = 2.0*x - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
         y = foot_y + pivot_1_y + normal_y*rise
-        slope_1_by_y = 2.0*y - 2.0*(1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+        slope_1_by_y = 2.0*y - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
         z = a1 + foot_z + normal_z*rise
         slope_1_by_z = 2.0*z - 2.0*a1
-        slope_2_by_x = 2.0*x - 2.0*(1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-        slope_2_by_y = 2.0*y - 2.0*(1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+        slope_2_by_x = 2.0*x - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+        slope_2_by_y = 2.0*y - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
         slope_2_by_z = 2.0*z - 2.0*a2
-        slope_3_by_x = 2.0*x - 2.0*(1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-        slope_3_by_y = 2.0*y - 2.0*(1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+        slope_3_by_x = 2.0*x - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+        slope_3_by_y = 2.0*y - 2.0*(1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
         slope_3_by_z = 2.0*z - 2.0*a3
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
@@ -1078,28 +1085,28 @@ class TripodP3Z(OffsetKinematics):
             return Status.BAD_INPUT
         flange_x = x - point_x  # the flange behind the point
         # rod 1
-        span_1_x = flange_x + rail_x_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1
+        span_1_x = flange_x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1
         flange_y = y - point_y  # the flange behind the point
         # rod 1
-        span_1_y = flange_y + rail_y_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1
+        span_1_y = flange_y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
         if not (root_square_a1 >= -1e-12*arm_length*arm_length):
             return Status.UNREACHABLE
         # rod 2
-        span_2_x = flange_x + rail_x_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2
+        span_2_x = flange_x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2
         # rod 2
-        span_2_y = flange_y + rail_y_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2
+        span_2_y = flange_y + rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
         if not (root_square_a2 >= -1e-12*arm_length*arm_length):
             return Status.UNREACHABLE
         # rod 3
-        span_3_x = flange_x + rail_x_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3
+        span_3_x = flange_x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3
         # rod 3
-        span_3_y = flange_y + rail_y_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3
+        span_3_y = flange_y + rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
@@ -1108,15 +1115,15 @@ class TripodP3Z(OffsetKinematics):
         rod_1_x = flange_x - pivot_1_x
         rod_1_y = flange_y - pivot_1_y
         flange_z = z - point_z  # the flange behind the point
-        a1 = flange_z + root(root_square_a1)*sigma_carriage_1
+        a1 = flange_z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
         rod_1_z = flange_z - a1
         rod_2_x = flange_x - pivot_2_x
         rod_2_y = flange_y - pivot_2_y
-        a2 = flange_z + root(root_square_a2)*sigma_carriage_2
+        a2 = flange_z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         rod_2_z = flange_z - a2
         rod_3_x = flange_x - pivot_3_x
         rod_3_y = flange_y - pivot_3_y
-        a3 = flange_z + root(root_square_a3)*sigma_carriage_3
+        a3 = flange_z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_z = flange_z - a3
         type2_rods_coplanar = (
             assembly_sign
@@ -1194,6 +1201,15 @@ class TripodP3Z(OffsetKinematics):
         branch_carriage_2 = (a2 - flange_z)/arm_length
         branch_carriage_3 = (a3 - flange_z)/arm_length
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

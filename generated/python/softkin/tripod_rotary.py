@@ -40,8 +40,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.tripod_rotary import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import Programs
@@ -94,7 +95,7 @@ class TripodRotary(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Tripod_Rotary"
     AXES = (
@@ -240,6 +241,12 @@ class TripodRotary(OffsetKinematics):
             min_type2_margin, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, arm_length_1: float, arm_length_2: float, arm_1_radius: float, stewart_radius: float,
@@ -660,7 +667,7 @@ class TripodRotary(OffsetKinematics):
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )
         )
-        effective_a1 = root(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a1 > 1e-9*arm_length_1):
             return Status.UNREACHABLE
@@ -689,7 +696,7 @@ class TripodRotary(OffsetKinematics):
         )
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
-        effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a2 > 5e-10*arm_length_1):
             return Status.UNREACHABLE
@@ -716,7 +723,7 @@ class TripodRotary(OffsetKinematics):
             - 0.5*root(3.0)*arm_1_radius
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
-        effective_a3 = root(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a3 > 5e-10*arm_length_1):
             return Status.UNREACHABLE
@@ -740,7 +747,7 @@ class TripodRotary(OffsetKinematics):
         cos_swing_a1 = (
             (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
         )
-        sin_swing_a1 = root(sine_square_a1)*sigma_knee_1
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
         # rod 1
         pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
@@ -764,7 +771,7 @@ class TripodRotary(OffsetKinematics):
             )
             /swing_scale_a2
         )
-        sin_swing_a2 = -root(sine_square_a2)*sigma_knee_2
+        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         # rod 2
         pivot_2_x = (
@@ -797,7 +804,7 @@ class TripodRotary(OffsetKinematics):
             )
             /swing_scale_a3
         )
-        sin_swing_a3 = -root(sine_square_a3)*sigma_knee_3
+        sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
         # rod 3
         pivot_3_x = (
@@ -845,13 +852,19 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
     def _limits(self, axes: Reals) -> Status:
@@ -1334,7 +1347,7 @@ class TripodRotary(OffsetKinematics):
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )
         )
-        effective_a1 = root(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a1 > 1e-9*arm_length_1):
             return Status.UNREACHABLE
@@ -1365,7 +1378,7 @@ class TripodRotary(OffsetKinematics):
         )
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
-        effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a2 > 5e-10*arm_length_1):
             return Status.UNREACHABLE
@@ -1392,7 +1405,7 @@ class TripodRotary(OffsetKinematics):
             - 0.5*root(3.0)*arm_1_radius
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
-        effective_a3 = root(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # the effective length is too short to be aimed
         if not (effective_a3 > 5e-10*arm_length_1):
             return Status.UNREACHABLE
@@ -1417,7 +1430,7 @@ class TripodRotary(OffsetKinematics):
             (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - flange_y*flange_y)
             /swing_scale_a1
         )
-        sin_swing_a1 = root(sine_square_a1)*sigma_knee_1
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
         # rod 1
         pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
@@ -1441,7 +1454,7 @@ class TripodRotary(OffsetKinematics):
             )
             /swing_scale_a2
         )
-        sin_swing_a2 = -root(sine_square_a2)*sigma_knee_2
+        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         # rod 2
         pivot_2_x = (
@@ -1474,7 +1487,7 @@ class TripodRotary(OffsetKinematics):
             )
             /swing_scale_a3
         )
-        sin_swing_a3 = -root(sine_square_a3)*sigma_knee_3
+        sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
         # rod 3
         pivot_3_x = (
@@ -1521,13 +1534,19 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         return (axis_a1, axis_a2, axis_a3)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -1675,6 +1694,15 @@ class TripodRotary(OffsetKinematics):
         )
         branch_knee_3 = 0.5*(-2.0*span_1_z*cos_a3 - span_2_x*sin_a3 - root(3.0)*span_3_y*sin_a3)/arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

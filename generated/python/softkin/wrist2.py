@@ -33,8 +33,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.wrist2 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
@@ -76,7 +77,7 @@ class Wrist2(OrientationKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Wrist2"
     AXES = (
@@ -178,6 +179,10 @@ class Wrist2(OrientationKinematics):
             lower_a, upper_a, lower_b, upper_b, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(lowest_a=-1e12, lowest_b=-1e12, highest_a=1e12, highest_b=1e12)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, tool_length: float, roll_axis_offset_x: float, roll_axis_offset_y: float, roll_axis_offset_z: float,
@@ -342,22 +347,29 @@ class Wrist2(OrientationKinematics):
         # a right-handed frame
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return Status.BAD_INPUT
-        free_a = (ref_a - offset_a)*DEGREE
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
-        length_a = radius_a if radius_a > 1e-11 else 1.0
-        cos_a = along_a/length_a if radius_a > 1e-11 else cos(free_a)  # its reference where it is free
-        across_a = r23_of_a*sigma_roll
-        sin_a = across_a/length_a if radius_a > 1e-11 else sin(free_a)
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        if radius_a > 1e-11:
+            along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
+            cos_a = along_a/radius_a  # its reference where it is free
+            across_a = r23_of_a*sigma_roll
+            sin_a = across_a/radius_a
+        else:
+            free_a = (ref_a - offset_a)*DEGREE
+            cos_a = cos(free_a)  # its reference where it is free
+            sin_a = sin(free_a)
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
         near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a
-        axis_a = nearest_period(offset_a + atan2(sin_a, cos_a)/DEGREE, near_a)  # A: its turn
+        axis_a = offset_a + arctan2(sin_a, cos_a + 0.0)/DEGREE  # A: its turn
+        if not -180.000000001 <= axis_a - near_a < 179.999999999:
+            axis_a = nearest_period(axis_a, near_a)
         a_radius_of_b = radius_a*sigma_roll
         open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
         near_b = (360.0*turn_b - 360.0 if turn_b > 0.0 else 360.0*turn_b) if abs(turn_b) > 0.0 else open_b
-        axis_b = nearest_period(offset_b + atan2(a_radius_of_b, r33)/DEGREE, near_b)  # B: its turn
+        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0)/DEGREE  # B: its turn
+        if not -180.000000001 <= axis_b - near_b < 179.999999999:
+            axis_b = nearest_period(axis_b, near_b)
         return (axis_a, axis_b)
 
     def _limits(self, axes: Reals) -> Status:
@@ -507,6 +519,15 @@ class Wrist2(OrientationKinematics):
             base_axis_y*flange_along + r23*tool_length*tool_side,
             base_axis_z*flange_along + r33*tool_length*tool_side,
         )
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

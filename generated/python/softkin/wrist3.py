@@ -34,8 +34,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics
-from softkin._scalar import DEGREE, atan2, cos, nearest_period, root, sin
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._unrolled.wrist3 import unrolled
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
@@ -81,7 +82,7 @@ class Wrist3(OrientationKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants",)
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Wrist3"
     AXES = (
@@ -186,6 +187,12 @@ class Wrist3(OrientationKinematics):
             upper_b, lower_c, upper_c, check_limits,
         )
         self._constants = self._setup(*values)
+        tested = self._constants
+        if not self.checks_limits:
+            tested = tested._replace(
+                lowest_a=-1e12, lowest_b=-1e12, lowest_c=-1e12, highest_a=1e12, highest_b=1e12, highest_c=1e12,
+            )
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, tool_offset_x: float, tool_offset_y: float, tool_offset_z: float, offset_a: float, offset_b: float,
@@ -368,26 +375,35 @@ class Wrist3(OrientationKinematics):
         # a right-handed frame
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return Status.BAD_INPUT
-        free_c = (ref_c - offset_c)*DEGREE
-        radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
-        along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
-        length_c = radius_c if radius_c > 1e-11 else 1.0
-        cos_c = along_c/length_c if radius_c > 1e-11 else cos(free_c)  # its reference where it is free
-        across_c = -r32*sigma_hand
-        sin_c = across_c/length_c if radius_c > 1e-11 else sin(free_c)
+        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
+        if radius_c > 1e-11:
+            along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
+            cos_c = along_c/radius_c  # its reference where it is free
+            across_c = -r32*sigma_hand
+            sin_c = across_c/radius_c
+        else:
+            free_c = (ref_c - offset_c)*DEGREE
+            cos_c = cos(free_c)  # its reference where it is free
+            sin_c = sin(free_c)
         r22_before_c = r22*cos_c + r21*sin_c
         r12_before_c = r12*cos_c + r11*sin_c
         sin_a = -r12_before_c
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
         near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a
-        axis_a = nearest_period(offset_a + atan2(sin_a, r22_before_c)/DEGREE, near_a)  # A: its turn
+        axis_a = offset_a + arctan2(sin_a, r22_before_c + 0.0)/DEGREE  # A: its turn
+        if not -180.000000001 <= axis_a - near_a < 179.999999999:
+            axis_a = nearest_period(axis_a, near_a)
         c_radius_of_b = radius_c*sigma_hand
         open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
         near_b = (360.0*turn_b - 360.0 if turn_b > 0.0 else 360.0*turn_b) if abs(turn_b) > 0.0 else open_b
-        axis_b = nearest_period(offset_b + atan2(c_radius_of_b, r33)/DEGREE, near_b)  # B: its turn
+        axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0)/DEGREE  # B: its turn
+        if not -180.000000001 <= axis_b - near_b < 179.999999999:
+            axis_b = nearest_period(axis_b, near_b)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
-        axis_c = nearest_period(offset_c + atan2(sin_c, cos_c)/DEGREE, near_c)  # C: its turn
+        axis_c = offset_c + arctan2(sin_c, cos_c + 0.0)/DEGREE  # C: its turn
+        if not -180.000000001 <= axis_c - near_c < 179.999999999:
+            axis_c = nearest_period(axis_c, near_c)
         return (axis_a, axis_b, axis_c)
 
     def _limits(self, axes: Reals) -> Status:
@@ -522,6 +538,15 @@ class Wrist3(OrientationKinematics):
             r21*tool_offset_x + r22*tool_offset_y + r23*tool_offset_z,
             r31*tool_offset_x + r32*tool_offset_y + r33*tool_offset_z,
         )
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
+
+    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+        return self._unrolled.branches(frame, reference)
+
+    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+        return self._unrolled.branch(frame, signs, reference)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -15,9 +16,11 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    everywhere,
     nearest_on_arc,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -214,47 +217,52 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d4/divisor_q1
-        sin_swing_q1 = -root(sine_square_q1)*sigma_shoulder
-        # its reference where it is free
-        cos_q1 = select(
-            distance_q1 > 1e-11*machine_scale,
-            (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1,
-            cos(free_a1),
-        )
-        sin_q1 = select(
-            distance_q1 > 1e-11*machine_scale,
-            (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1,
-            sin(free_a1),
-        )
+        if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_swing_q1 = -d4/divisor_q1
+            sin_swing_q1 = -root(sine_square_q1)*sigma_shoulder
+            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_swing_q1 = -d4/divisor_q1
+            sin_swing_q1 = -root(sine_square_q1)*sigma_shoulder
+            # its reference where it is free
+            cos_q1 = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1 = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1,
+                sin(free_a1),
+            )
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = root(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        if everywhere(radius_q6 > 1e-11):
+            along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
+            cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
+            across_q6 = r22_from_q1*sigma_wrist
+            sin_q6_before_q6_of_q3 = across_q6/radius_q6
+        else:
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
+            length_q6 = select(radius_q6 > 1e-11, radius_q6, 1.0)
+            # its reference where it is free
+            cos_q6_before_q6_of_q3 = select(radius_q6 > 1e-11, along_q6/length_q6, cos(free_a6))
+            across_q6 = r22_from_q1*sigma_wrist
+            sin_q6_before_q6_of_q3 = select(radius_q6 > 1e-11, across_q6/length_q6, sin(free_a6))
         q6_radius_of_q5 = radius_q6*sigma_wrist
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         cos_q5 = -r23_from_q1  # q5: linear pair in the q6 radius and r32 equations
-        free_a6 = (ref_a6 - offset_a6)*DEGREE
-        along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
-        length_q6 = select(radius_q6 > 1e-11, radius_q6, 1.0)
-        # its reference where it is free
-        cos_q6_before_q6_of_q3 = select(radius_q6 > 1e-11, along_q6/length_q6, cos(free_a6))
         wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
         wrist_x_from_q1_along = -d5*r31*cos_q5
         wrist_z = z - d6*r33
         wrist_y_from_q1_fixed = wrist_z - d1
         wrist_y_from_q1_along = d5*r32
-        along_q6_of_q3 = (
-            2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-        )
         wrist_x_from_q1_across = d5*r32*cos_q5
         wrist_y_from_q1_across = d5*r31
-        across_q6_of_q3 = (
-            2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-        )
-        swing_q6_of_q3 = root(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-        across_q6 = r22_from_q1*sigma_wrist
-        sin_q6_before_q6_of_q3 = select(radius_q6 > 1e-11, across_q6/length_q6, sin(free_a6))
         wrist_x_from_q1_here = (
             wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
             + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
@@ -267,66 +275,77 @@ class ArrayPrograms(Programs):
         value_q6_of_q3 = (
             wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
         )
-        level_q6_of_q3 = (
-            value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
-        )
-        divisor_q6_of_q3 = select(swing_q6_of_q3 > 1e-12*size_q6_of_q3, swing_q6_of_q3, 1.0)
-        # the arc: cosines from its centre
-        highest_q6_of_q3 = select(
-            swing_q6_of_q3 > 1e-12*size_q6_of_q3,
-            select(
-                (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3 > 1.0,
-                1.0,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3 < -1.0, -1.0,
-                    (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3,
-                ),
-            ),
-            1.0,
-        )
-        near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-        lowest_q6_of_q3 = select(
-            swing_q6_of_q3 > 1e-12*size_q6_of_q3,
-            select(
-                (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3 > 1.0,
-                1.0,
-                select(
-                    (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3 < -1.0,
-                    -1.0,
-                    (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3,
-                ),
-            ),
-            -1.0,
-        )
-        far_q6_of_q3 = atan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-        centre_q6_of_q3 = atan2(across_q6_of_q3, along_q6_of_q3)
-        angle_q6_of_q3 = atan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
-        side_q6_of_q3 = select(
-            along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0, 1.0, -1.0,
-        )
-        moved_q6_of_q3 = nearest_on_arc(
-            angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-            0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
-        )
-        cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-        sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-        # what the motion changes of the pose
-        cost_q6_of_q3 = (
-            root(
-                (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
-                + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
+        if everywhere(absolute(value_q6_of_q3) <= size_q6_of_q3):
+            cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
+            sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+        else:
+            along_q6_of_q3 = (
+                2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             )
-            *radius_q6
-        )
-        stays_q6_of_q3 = select(
-            absolute(value_q6_of_q3) <= size_q6_of_q3,
-            1.0,
-            select((cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11), 1.0, 0.0),
-        )
-        # moved to where the rest can be reached
-        cos_q6 = select(stays_q6_of_q3 > 0.0, cos_q6_before_q6_of_q3, cos_q6_after_q6_of_q3)
-        # moved to where the rest can be reached
-        sin_q6 = select(stays_q6_of_q3 > 0.0, sin_q6_before_q6_of_q3, sin_q6_after_q6_of_q3)
+            across_q6_of_q3 = (
+                2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3 = root(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+            level_q6_of_q3 = (
+                value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
+            )
+            divisor_q6_of_q3 = select(swing_q6_of_q3 > 1e-12*size_q6_of_q3, swing_q6_of_q3, 1.0)
+            # the arc: cosines from its centre
+            highest_q6_of_q3 = select(
+                swing_q6_of_q3 > 1e-12*size_q6_of_q3,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3 > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3 < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3,
+                    ),
+                ),
+                1.0,
+            )
+            near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
+            lowest_q6_of_q3 = select(
+                swing_q6_of_q3 > 1e-12*size_q6_of_q3,
+                select(
+                    (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3 > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3 < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3,
+                    ),
+                ),
+                -1.0,
+            )
+            far_q6_of_q3 = atan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
+            centre_q6_of_q3 = atan2(across_q6_of_q3, along_q6_of_q3)
+            angle_q6_of_q3 = atan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
+            side_q6_of_q3 = select(
+                along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0, 1.0, -1.0,
+            )
+            moved_q6_of_q3 = nearest_on_arc(
+                angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+            )
+            cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+            sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+            # what the motion changes of the pose
+            cost_q6_of_q3 = (
+                root(
+                    (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
+                    + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
+                )
+                *radius_q6
+            )
+            stays_q6_of_q3 = select(
+                absolute(value_q6_of_q3) <= size_q6_of_q3,
+                1.0,
+                select((cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11), 1.0, 0.0),
+            )
+            # moved to where the rest can be reached
+            cos_q6 = select(stays_q6_of_q3 > 0.0, cos_q6_before_q6_of_q3, cos_q6_after_q6_of_q3)
+            # moved to where the rest can be reached
+            sin_q6 = select(stays_q6_of_q3 > 0.0, sin_q6_before_q6_of_q3, sin_q6_after_q6_of_q3)
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
         # what the unknown links must span
@@ -338,6 +357,36 @@ class ArrayPrograms(Programs):
         sine_square_q3 = (a3 + reach - a2)*(a2 + a3 + reach)*(a2 + a3 - reach)*(a2 + reach - a3)/(scale_q3*scale_q3)
         # out of reach
         require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
+        cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
+        sin_q3 = root(sine_square_q3)*sigma_elbow
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+            length_q2 = select(
+                across_q2*across_q2 + along_q2*along_q2 > 0.0,
+                root(across_q2*across_q2 + along_q2*along_q2),
+                1.0,
+            )
+            cos_q2 = along_q2/length_q2  # its reference where it is free
+            sin_q2 = across_q2/length_q2
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+            length_q2 = select(
+                (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
+                root(across_q2*across_q2 + along_q2*along_q2),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
+            sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -345,22 +394,6 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
-        arm_along_q2 = a2 + a3*cos_q3
-        sin_q3 = root(sine_square_q3)*sigma_elbow
-        arm_across_q2 = a3*sin_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        length_q2 = select(
-            (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
-            root(across_q2*across_q2 + along_q2*along_q2),
-            1.0,
-        )
-        # its reference where it is free
-        cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
-        sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -432,3 +465,1385 @@ class ArrayPrograms(Programs):
         # limits of A6
         require(status, (axis_a6 >= lowest_a6) & (axis_a6 <= highest_a6), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
+        ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
+        k = self.constants
+        a2 = k.a2
+        a3 = k.a3
+        d1 = k.d1
+        d4 = k.d4
+        d5 = k.d5
+        d6 = k.d6
+        machine_scale = k.machine_scale
+        mid_a1 = k.mid_a1
+        mid_a2 = k.mid_a2
+        mid_a3 = k.mid_a3
+        mid_a4 = k.mid_a4
+        mid_a5 = k.mid_a5
+        mid_a6 = k.mid_a6
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        offset_a4 = k.offset_a4
+        offset_a5 = k.offset_a5
+        offset_a6 = k.offset_a6
+        scale_q3 = k.scale_q3
+        single_a1 = k.single_a1
+        single_a2 = k.single_a2
+        single_a3 = k.single_a3
+        single_a4 = k.single_a4
+        single_a5 = k.single_a5
+        single_a6 = k.single_a6
+        size_q6_of_q3 = k.size_q6_of_q3
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
+                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
+                & (absolute(r33) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
+        require(
+            status,
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
+                & (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
+        # columns of length one, at right angles
+        require(
+            status,
+            (
+                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
+                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
+                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
+                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
+                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
+            ),
+            Status.BAD_INPUT,
+        )
+        # a right-handed frame
+        require(
+            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
+            Status.BAD_INPUT,
+        )
+        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_y = y - d6*r23
+        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        # q1: aimed by the z_from_q1 equation
+        divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
+        sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
+        # out of reach
+        require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
+        free_a1 = (ref_a1 - offset_a1)*DEGREE
+        cos_swing_q1 = -d4/divisor_q1
+        sin_swing_q1_left = -root(sine_square_q1)
+        if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
+            sin_q1_left = (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1
+        else:
+            # its reference where it is free
+            cos_q1_left = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1_left = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1,
+                sin(free_a1),
+            )
+        r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
+        r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
+        # q6: direction and distance of a point
+        radius_q6_left = root(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
+        free_a6 = (ref_a6 - offset_a6)*DEGREE
+        if everywhere(radius_q6_left > 1e-11):
+            length_q6_left = radius_q6_left
+            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/length_q6_left  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/length_q6_left
+        else:
+            length_q6_left = select(radius_q6_left > 1e-11, radius_q6_left, 1.0)
+            # its reference where it is free
+            cos_q6_before_q6_of_q3_left_down = select(
+                radius_q6_left > 1e-11,
+                -r21_from_q1_left/length_q6_left,
+                cos(free_a6),
+            )
+            sin_q6_before_q6_of_q3_left_down = select(
+                radius_q6_left > 1e-11,
+                r22_from_q1_left/length_q6_left,
+                sin(free_a6),
+            )
+        r23_from_q1_left = r23*cos_q1_left - r13*sin_q1_left
+        wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
+        wrist_x_from_q1_along_left = d5*r23_from_q1_left*r31
+        wrist_z = z - d6*r33
+        wrist_y_from_q1_fixed = wrist_z - d1
+        wrist_y_from_q1_along = d5*r32
+        wrist_x_from_q1_across_left = -d5*r23_from_q1_left*r32
+        wrist_y_from_q1_across = d5*r31
+        wrist_x_from_q1_here_left_down = (
+            wrist_x_from_q1_fixed_left_down + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_down
+            + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_down
+        )
+        wrist_y_from_q1_here_left_down = (
+            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_down
+            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_down
+        )
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_left_down = (
+            wrist_x_from_q1_here_left_down*wrist_x_from_q1_here_left_down
+            + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2*a2 - a3*a3
+        )
+        if everywhere(absolute(value_q6_of_q3_left_down) <= size_q6_of_q3):
+            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+        else:
+            along_q6_of_q3_left_down = (
+                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_down
+                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            )
+            across_q6_of_q3_left_down = (
+                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_down
+                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3_left_down = root(
+                across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
+            )
+            level_q6_of_q3_left_down = (
+                value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
+                - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
+            )
+            divisor_q6_of_q3_left_down = select(
+                swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3, swing_q6_of_q3_left_down, 1.0,
+            )
+            # the arc: cosines from its centre
+            highest_q6_of_q3_left_down = select(
+                swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3_left_down)/divisor_q6_of_q3_left_down > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3_left_down)/divisor_q6_of_q3_left_down < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3_left_down)/divisor_q6_of_q3_left_down,
+                    ),
+                ),
+                1.0,
+            )
+            near_q6_of_q3_left_down = atan2(
+                root((1.0 - highest_q6_of_q3_left_down)*(1.0 + highest_q6_of_q3_left_down)),
+                highest_q6_of_q3_left_down,
+            )
+            lowest_q6_of_q3_left_down = select(
+                swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3,
+                select(
+                    (-level_q6_of_q3_left_down - size_q6_of_q3)/divisor_q6_of_q3_left_down > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3_left_down - size_q6_of_q3)/divisor_q6_of_q3_left_down < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3_left_down - size_q6_of_q3)/divisor_q6_of_q3_left_down,
+                    ),
+                ),
+                -1.0,
+            )
+            far_q6_of_q3_left_down = atan2(
+                root((1.0 - lowest_q6_of_q3_left_down)*(1.0 + lowest_q6_of_q3_left_down)),
+                lowest_q6_of_q3_left_down,
+            )
+            centre_q6_of_q3_left_down = atan2(across_q6_of_q3_left_down, along_q6_of_q3_left_down)
+            angle_q6_of_q3_left_down = atan2(sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_down)
+            side_q6_of_q3_left_down = select(
+                (
+                    along_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
+                    - across_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down >= 0.0
+                ),
+                1.0,
+                -1.0,
+            )
+            moved_q6_of_q3_left_down = nearest_on_arc(
+                angle_q6_of_q3_left_down,
+                (
+                    centre_q6_of_q3_left_down
+                    + 0.5*(far_q6_of_q3_left_down + near_q6_of_q3_left_down)*side_q6_of_q3_left_down
+                ),
+                0.5*far_q6_of_q3_left_down - 0.5*near_q6_of_q3_left_down,
+            )
+            cos_q6_after_q6_of_q3_left_down = cos(moved_q6_of_q3_left_down)
+            sin_q6_after_q6_of_q3_left_down = sin(moved_q6_of_q3_left_down)
+            # what the motion changes of the pose
+            cost_q6_of_q3_left_down = (
+                root(
+                    (
+                        cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down
+                    )*(cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down)
+                    + (
+                        sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down
+                    )*(sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down)
+                )
+                *radius_q6_left
+            )
+            stays_q6_of_q3_left_down = select(
+                absolute(value_q6_of_q3_left_down) <= size_q6_of_q3,
+                1.0,
+                select((cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left > 1e-11), 1.0, 0.0),
+            )
+            # moved to where the rest can be reached
+            cos_q6_left_down = select(
+                stays_q6_of_q3_left_down > 0.0, cos_q6_before_q6_of_q3_left_down, cos_q6_after_q6_of_q3_left_down,
+            )
+            # moved to where the rest can be reached
+            sin_q6_left_down = select(
+                stays_q6_of_q3_left_down > 0.0, sin_q6_before_q6_of_q3_left_down, sin_q6_after_q6_of_q3_left_down,
+            )
+        if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
+            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
+        else:
+            # its reference where it is free
+            cos_q1_right = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1_right = select(
+                distance_q1 > 1e-11*machine_scale,
+                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1,
+                sin(free_a1),
+            )
+        r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
+        r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
+        # q6: direction and distance of a point
+        radius_q6_right = root(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
+        if everywhere(radius_q6_right > 1e-11):
+            length_q6_right = radius_q6_right
+            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/length_q6_right  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/length_q6_right
+        else:
+            length_q6_right = select(radius_q6_right > 1e-11, radius_q6_right, 1.0)
+            # its reference where it is free
+            cos_q6_before_q6_of_q3_right_down = select(
+                radius_q6_right > 1e-11,
+                -r21_from_q1_right/length_q6_right,
+                cos(free_a6),
+            )
+            sin_q6_before_q6_of_q3_right_down = select(
+                radius_q6_right > 1e-11,
+                r22_from_q1_right/length_q6_right,
+                sin(free_a6),
+            )
+        r23_from_q1_right = r23*cos_q1_right - r13*sin_q1_right
+        wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
+        wrist_x_from_q1_along_right = d5*r23_from_q1_right*r31
+        wrist_x_from_q1_across_right = -d5*r23_from_q1_right*r32
+        wrist_x_from_q1_here_right_down = (
+            wrist_x_from_q1_fixed_right_down + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_down
+            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_down
+        )
+        wrist_y_from_q1_here_right_down = (
+            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_down
+            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_down
+        )
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_right_down = (
+            wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
+            + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2*a2 - a3*a3
+        )
+        if everywhere(absolute(value_q6_of_q3_right_down) <= size_q6_of_q3):
+            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+        else:
+            along_q6_of_q3_right_down = (
+                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
+                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            )
+            across_q6_of_q3_right_down = (
+                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down
+                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3_right_down = root(
+                across_q6_of_q3_right_down*across_q6_of_q3_right_down
+                + along_q6_of_q3_right_down*along_q6_of_q3_right_down
+            )
+            level_q6_of_q3_right_down = (
+                value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
+                - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
+            )
+            divisor_q6_of_q3_right_down = select(
+                swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3, swing_q6_of_q3_right_down, 1.0,
+            )
+            # the arc: cosines from its centre
+            highest_q6_of_q3_right_down = select(
+                swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3_right_down)/divisor_q6_of_q3_right_down > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3_right_down)/divisor_q6_of_q3_right_down < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3_right_down)/divisor_q6_of_q3_right_down,
+                    ),
+                ),
+                1.0,
+            )
+            near_q6_of_q3_right_down = atan2(
+                root((1.0 - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)),
+                highest_q6_of_q3_right_down,
+            )
+            lowest_q6_of_q3_right_down = select(
+                swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3,
+                select(
+                    (-level_q6_of_q3_right_down - size_q6_of_q3)/divisor_q6_of_q3_right_down > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3_right_down - size_q6_of_q3)/divisor_q6_of_q3_right_down < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3_right_down - size_q6_of_q3)/divisor_q6_of_q3_right_down,
+                    ),
+                ),
+                -1.0,
+            )
+            far_q6_of_q3_right_down = atan2(
+                root((1.0 - lowest_q6_of_q3_right_down)*(1.0 + lowest_q6_of_q3_right_down)),
+                lowest_q6_of_q3_right_down,
+            )
+            centre_q6_of_q3_right_down = atan2(across_q6_of_q3_right_down, along_q6_of_q3_right_down)
+            angle_q6_of_q3_right_down = atan2(sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_down)
+            side_q6_of_q3_right_down = select(
+                (
+                    along_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
+                    - across_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down >= 0.0
+                ),
+                1.0,
+                -1.0,
+            )
+            moved_q6_of_q3_right_down = nearest_on_arc(
+                angle_q6_of_q3_right_down,
+                (
+                    centre_q6_of_q3_right_down
+                    + 0.5*(far_q6_of_q3_right_down + near_q6_of_q3_right_down)*side_q6_of_q3_right_down
+                ),
+                0.5*far_q6_of_q3_right_down - 0.5*near_q6_of_q3_right_down,
+            )
+            cos_q6_after_q6_of_q3_right_down = cos(moved_q6_of_q3_right_down)
+            sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
+            # what the motion changes of the pose
+            cost_q6_of_q3_right_down = (
+                root(
+                    (
+                        cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
+                    )*(cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down)
+                    + (
+                        sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
+                    )*(sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down)
+                )
+                *radius_q6_right
+            )
+            stays_q6_of_q3_right_down = select(
+                absolute(value_q6_of_q3_right_down) <= size_q6_of_q3,
+                1.0,
+                select((cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right > 1e-11), 1.0, 0.0),
+            )
+            # moved to where the rest can be reached
+            cos_q6_right_down = select(
+                stays_q6_of_q3_right_down > 0.0, cos_q6_before_q6_of_q3_right_down, cos_q6_after_q6_of_q3_right_down,
+            )
+            # moved to where the rest can be reached
+            sin_q6_right_down = select(
+                stays_q6_of_q3_right_down > 0.0, sin_q6_before_q6_of_q3_right_down, sin_q6_after_q6_of_q3_right_down,
+            )
+        if everywhere(radius_q6_left > 1e-11):
+            cos_q6_before_q6_of_q3_left_up = r21_from_q1_left/length_q6_left  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left/length_q6_left
+        else:
+            # its reference where it is free
+            cos_q6_before_q6_of_q3_left_up = select(radius_q6_left > 1e-11, r21_from_q1_left/length_q6_left, cos(free_a6))
+            sin_q6_before_q6_of_q3_left_up = select(
+                radius_q6_left > 1e-11,
+                -r22_from_q1_left/length_q6_left,
+                sin(free_a6),
+            )
+        wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
+        wrist_x_from_q1_here_left_up = (
+            wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
+            + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_up
+        )
+        wrist_y_from_q1_here_left_up = (
+            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_up
+            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_up
+        )
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_left_up = (
+            wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
+            + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2*a2 - a3*a3
+        )
+        if everywhere(absolute(value_q6_of_q3_left_up) <= size_q6_of_q3):
+            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+        else:
+            along_q6_of_q3_left_up = (
+                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
+                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            )
+            across_q6_of_q3_left_up = (
+                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
+                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3_left_up = root(
+                across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
+            )
+            level_q6_of_q3_left_up = (
+                value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
+                - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
+            )
+            divisor_q6_of_q3_left_up = select(swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3, swing_q6_of_q3_left_up, 1.0)
+            # the arc: cosines from its centre
+            highest_q6_of_q3_left_up = select(
+                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up,
+                    ),
+                ),
+                1.0,
+            )
+            near_q6_of_q3_left_up = atan2(
+                root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
+                highest_q6_of_q3_left_up,
+            )
+            lowest_q6_of_q3_left_up = select(
+                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
+                select(
+                    (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up,
+                    ),
+                ),
+                -1.0,
+            )
+            far_q6_of_q3_left_up = atan2(
+                root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
+                lowest_q6_of_q3_left_up,
+            )
+            centre_q6_of_q3_left_up = atan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up)
+            angle_q6_of_q3_left_up = atan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up)
+            side_q6_of_q3_left_up = select(
+                (
+                    along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
+                    - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
+                ),
+                1.0,
+                -1.0,
+            )
+            moved_q6_of_q3_left_up = nearest_on_arc(
+                angle_q6_of_q3_left_up,
+                (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
+                0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
+            )
+            cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
+            sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
+            # what the motion changes of the pose
+            cost_q6_of_q3_left_up = (
+                root(
+                    (
+                        cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
+                    )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
+                    + (
+                        sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
+                    )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
+                )
+                *radius_q6_left
+            )
+            stays_q6_of_q3_left_up = select(
+                absolute(value_q6_of_q3_left_up) <= size_q6_of_q3,
+                1.0,
+                select((cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left > 1e-11), 1.0, 0.0),
+            )
+            # moved to where the rest can be reached
+            cos_q6_left_up = select(
+                stays_q6_of_q3_left_up > 0.0, cos_q6_before_q6_of_q3_left_up, cos_q6_after_q6_of_q3_left_up,
+            )
+            # moved to where the rest can be reached
+            sin_q6_left_up = select(
+                stays_q6_of_q3_left_up > 0.0, sin_q6_before_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up,
+            )
+        if everywhere(radius_q6_right > 1e-11):
+            cos_q6_before_q6_of_q3_right_up = r21_from_q1_right/length_q6_right  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right/length_q6_right
+        else:
+            # its reference where it is free
+            cos_q6_before_q6_of_q3_right_up = select(
+                radius_q6_right > 1e-11,
+                r21_from_q1_right/length_q6_right,
+                cos(free_a6),
+            )
+            sin_q6_before_q6_of_q3_right_up = select(
+                radius_q6_right > 1e-11,
+                -r22_from_q1_right/length_q6_right,
+                sin(free_a6),
+            )
+        wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
+        wrist_x_from_q1_here_right_up = (
+            wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
+            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
+        )
+        wrist_y_from_q1_here_right_up = (
+            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_up
+            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_up
+        )
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_right_up = (
+            wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
+            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
+        )
+        if everywhere(absolute(value_q6_of_q3_right_up) <= size_q6_of_q3):
+            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+        else:
+            along_q6_of_q3_right_up = (
+                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
+                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            )
+            across_q6_of_q3_right_up = (
+                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
+                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3_right_up = root(
+                across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
+            )
+            level_q6_of_q3_right_up = (
+                value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
+                - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
+            )
+            divisor_q6_of_q3_right_up = select(
+                swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3, swing_q6_of_q3_right_up, 1.0,
+            )
+            # the arc: cosines from its centre
+            highest_q6_of_q3_right_up = select(
+                swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3_right_up)/divisor_q6_of_q3_right_up > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3_right_up)/divisor_q6_of_q3_right_up < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3_right_up)/divisor_q6_of_q3_right_up,
+                    ),
+                ),
+                1.0,
+            )
+            near_q6_of_q3_right_up = atan2(
+                root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)),
+                highest_q6_of_q3_right_up,
+            )
+            lowest_q6_of_q3_right_up = select(
+                swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3,
+                select(
+                    (-level_q6_of_q3_right_up - size_q6_of_q3)/divisor_q6_of_q3_right_up > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3_right_up - size_q6_of_q3)/divisor_q6_of_q3_right_up < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3_right_up - size_q6_of_q3)/divisor_q6_of_q3_right_up,
+                    ),
+                ),
+                -1.0,
+            )
+            far_q6_of_q3_right_up = atan2(
+                root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)),
+                lowest_q6_of_q3_right_up,
+            )
+            centre_q6_of_q3_right_up = atan2(across_q6_of_q3_right_up, along_q6_of_q3_right_up)
+            angle_q6_of_q3_right_up = atan2(sin_q6_before_q6_of_q3_right_up, cos_q6_before_q6_of_q3_right_up)
+            side_q6_of_q3_right_up = select(
+                (
+                    along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
+                    - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0
+                ),
+                1.0,
+                -1.0,
+            )
+            moved_q6_of_q3_right_up = nearest_on_arc(
+                angle_q6_of_q3_right_up,
+                (centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)*side_q6_of_q3_right_up),
+                0.5*far_q6_of_q3_right_up - 0.5*near_q6_of_q3_right_up,
+            )
+            cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
+            sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
+            # what the motion changes of the pose
+            cost_q6_of_q3_right_up = (
+                root(
+                    (
+                        cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
+                    )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
+                    + (
+                        sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
+                    )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
+                )
+                *radius_q6_right
+            )
+            stays_q6_of_q3_right_up = select(
+                absolute(value_q6_of_q3_right_up) <= size_q6_of_q3,
+                1.0,
+                select((cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right > 1e-11), 1.0, 0.0),
+            )
+            # moved to where the rest can be reached
+            cos_q6_right_up = select(
+                stays_q6_of_q3_right_up > 0.0, cos_q6_before_q6_of_q3_right_up, cos_q6_after_q6_of_q3_right_up,
+            )
+            # moved to where the rest can be reached
+            sin_q6_right_up = select(
+                stays_q6_of_q3_right_up > 0.0, sin_q6_before_q6_of_q3_right_up, sin_q6_after_q6_of_q3_right_up,
+            )
+        r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
+        r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
+        # what the unknown links must span
+        wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
+        r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
+        # what the unknown links must span
+        wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
+        reach_left_down = root(
+            wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
+        )
+        # kept as a product
+        sine_square_q3_left_down = (
+            (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
+            *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
+        )
+        free_a2 = (ref_a2 - offset_a2)*DEGREE
+        cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
+        sin_q3_left_up_down = root(sine_square_q3_left_down)
+        if everywhere(reach_left_down > 1e-11*machine_scale):
+            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
+            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_up_down = (
+                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
+            )
+            across_q2_left_up_down = (
+                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
+            )
+            length_q2_left_up_down = select(
+                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0,
+                root(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down),
+                1.0,
+            )
+            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
+            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_down_down = (
+                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
+            )
+            across_q2_left_down_down = (
+                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
+            )
+            length_q2_left_down_down = select(
+                (
+                    across_q2_left_down_down*across_q2_left_down_down
+                    + along_q2_left_down_down*along_q2_left_down_down > 0.0
+                ),
+                root(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down),
+                1.0,
+            )
+            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
+            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
+        else:
+            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
+            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_up_down = (
+                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
+            )
+            across_q2_left_up_down = (
+                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
+            )
+            length_q2_left_up_down = select(
+                (
+                    (reach_left_down > 1e-11*machine_scale)
+                    & (across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0)
+                ),
+                root(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_left_up_down = select(
+                reach_left_down > 1e-11*machine_scale,
+                along_q2_left_up_down/length_q2_left_up_down,
+                cos(free_a2),
+            )
+            sin_q2_left_up_down = select(
+                reach_left_down > 1e-11*machine_scale,
+                across_q2_left_up_down/length_q2_left_up_down,
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_down_down = (
+                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
+            )
+            across_q2_left_down_down = (
+                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
+            )
+            length_q2_left_down_down = select(
+                (
+                    (reach_left_down > 1e-11*machine_scale)
+                    & (
+                        across_q2_left_down_down*across_q2_left_down_down
+                        + along_q2_left_down_down*along_q2_left_down_down > 0.0
+                    )
+                ),
+                root(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_left_down_down = select(
+                reach_left_down > 1e-11*machine_scale,
+                along_q2_left_down_down/length_q2_left_down_down,
+                cos(free_a2),
+            )
+            sin_q2_left_down_down = select(
+                reach_left_down > 1e-11*machine_scale,
+                across_q2_left_down_down/length_q2_left_down_down,
+                sin(free_a2),
+            )
+        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
+        r21_from_q1_before_q56_right_down = -r21_from_q1_before_q6_right_down*r23_from_q1_right - r33*radius_q6_right
+        # what the unknown links must span
+        wrist_x_from_q1_right_down = (
+            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
+        )
+        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
+        # what the unknown links must span
+        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
+        reach_right_down = root(
+            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
+            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
+        )
+        # kept as a product
+        sine_square_q3_right_down = (
+            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
+            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
+        )
+        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
+        sin_q3_right_up_down = root(sine_square_q3_right_down)
+        if everywhere(reach_right_down > 1e-11*machine_scale):
+            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
+            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_up_down = (
+                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+                + arm_along_q2_right_down*wrist_x_from_q1_right_down
+            )
+            across_q2_right_up_down = (
+                arm_along_q2_right_down*wrist_y_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+            )
+            length_q2_right_up_down = select(
+                (across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down > 0.0),
+                root(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down),
+                1.0,
+            )
+            cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
+            sin_q2_right_up_down = across_q2_right_up_down/length_q2_right_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_down_down = (
+                arm_along_q2_right_down*wrist_x_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+            )
+            across_q2_right_down_down = (
+                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+                + arm_along_q2_right_down*wrist_y_from_q1_right_down
+            )
+            length_q2_right_down_down = select(
+                (
+                    across_q2_right_down_down*across_q2_right_down_down
+                    + along_q2_right_down_down*along_q2_right_down_down > 0.0
+                ),
+                root(
+                    across_q2_right_down_down*across_q2_right_down_down
+                    + along_q2_right_down_down*along_q2_right_down_down
+                ),
+                1.0,
+            )
+            cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
+            sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
+        else:
+            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
+            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_up_down = (
+                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+                + arm_along_q2_right_down*wrist_x_from_q1_right_down
+            )
+            across_q2_right_up_down = (
+                arm_along_q2_right_down*wrist_y_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+            )
+            length_q2_right_up_down = select(
+                (
+                    (reach_right_down > 1e-11*machine_scale)
+                    & (
+                        across_q2_right_up_down*across_q2_right_up_down
+                        + along_q2_right_up_down*along_q2_right_up_down > 0.0
+                    )
+                ),
+                root(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_right_up_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                along_q2_right_up_down/length_q2_right_up_down,
+                cos(free_a2),
+            )
+            sin_q2_right_up_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                across_q2_right_up_down/length_q2_right_up_down,
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_down_down = (
+                arm_along_q2_right_down*wrist_x_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+            )
+            across_q2_right_down_down = (
+                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+                + arm_along_q2_right_down*wrist_y_from_q1_right_down
+            )
+            length_q2_right_down_down = select(
+                (
+                    (reach_right_down > 1e-11*machine_scale)
+                    & (
+                        across_q2_right_down_down*across_q2_right_down_down
+                        + along_q2_right_down_down*along_q2_right_down_down > 0.0
+                    )
+                ),
+                root(
+                    across_q2_right_down_down*across_q2_right_down_down
+                    + along_q2_right_down_down*along_q2_right_down_down
+                ),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_right_down_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                along_q2_right_down_down/length_q2_right_down_down,
+                cos(free_a2),
+            )
+            sin_q2_right_down_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                across_q2_right_down_down/length_q2_right_down_down,
+                sin(free_a2),
+            )
+        r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
+        r21_from_q1_before_q56_left_up = r33*radius_q6_left - r21_from_q1_before_q6_left_up*r23_from_q1_left
+        # what the unknown links must span
+        wrist_x_from_q1_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_up
+        r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
+        wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
+        reach_left_up = root(
+            wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
+        )
+        # kept as a product
+        sine_square_q3_left_up = (
+            (a3 + reach_left_up - a2)*(a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)*(a2 + reach_left_up - a3)
+            /(scale_q3*scale_q3)
+        )
+        cos_q3_left_up = (reach_left_up*reach_left_up - a2*a2 - a3*a3)/scale_q3
+        sin_q3_left_up_up = root(sine_square_q3_left_up)
+        if everywhere(reach_left_up > 1e-11*machine_scale):
+            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
+            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_up_up = (
+                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
+            )
+            across_q2_left_up_up = (
+                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
+            )
+            length_q2_left_up_up = select(
+                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0,
+                root(across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up),
+                1.0,
+            )
+            cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
+            sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_down_up = (
+                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
+            )
+            across_q2_left_down_up = (
+                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
+            )
+            length_q2_left_down_up = select(
+                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0,
+                root(across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up),
+                1.0,
+            )
+            cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
+            sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
+        else:
+            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
+            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_up_up = (
+                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
+            )
+            across_q2_left_up_up = (
+                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
+            )
+            length_q2_left_up_up = select(
+                (
+                    (reach_left_up > 1e-11*machine_scale)
+                    & (across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0)
+                ),
+                root(across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_left_up_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                along_q2_left_up_up/length_q2_left_up_up,
+                cos(free_a2),
+            )
+            sin_q2_left_up_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                across_q2_left_up_up/length_q2_left_up_up,
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_down_up = (
+                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
+            )
+            across_q2_left_down_up = (
+                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
+            )
+            length_q2_left_down_up = select(
+                (
+                    (reach_left_up > 1e-11*machine_scale)
+                    & (across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0)
+                ),
+                root(across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_left_down_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                along_q2_left_down_up/length_q2_left_down_up,
+                cos(free_a2),
+            )
+            sin_q2_left_down_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                across_q2_left_down_up/length_q2_left_down_up,
+                sin(free_a2),
+            )
+        r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
+        r21_from_q1_before_q56_right_up = r33*radius_q6_right - r21_from_q1_before_q6_right_up*r23_from_q1_right
+        # what the unknown links must span
+        wrist_x_from_q1_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_up
+        r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
+        # what the unknown links must span
+        wrist_y_from_q1_right_up = wrist_z + d5*r22_from_q1_before_q6_right_up - d1
+        reach_right_up = root(
+            wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
+        )
+        # kept as a product
+        sine_square_q3_right_up = (
+            (a3 + reach_right_up - a2)*(a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
+            *(a2 + reach_right_up - a3)/(scale_q3*scale_q3)
+        )
+        cos_q3_right_up = (reach_right_up*reach_right_up - a2*a2 - a3*a3)/scale_q3
+        sin_q3_right_up_up = root(sine_square_q3_right_up)
+        if everywhere(reach_right_up > 1e-11*machine_scale):
+            arm_along_q2_right_up = a2 + a3*cos_q3_right_up
+            arm_across_q2_right_up_up = a3*sin_q3_right_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_up_up = (
+                arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
+            )
+            across_q2_right_up_up = (
+                arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
+            )
+            length_q2_right_up_up = select(
+                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up > 0.0,
+                root(across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up),
+                1.0,
+            )
+            cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
+            sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_down_up = (
+                arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
+            )
+            across_q2_right_down_up = (
+                arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
+            )
+            length_q2_right_down_up = select(
+                (across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up > 0.0),
+                root(across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up),
+                1.0,
+            )
+            cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
+            sin_q2_right_down_up = across_q2_right_down_up/length_q2_right_down_up
+        else:
+            arm_along_q2_right_up = a2 + a3*cos_q3_right_up
+            arm_across_q2_right_up_up = a3*sin_q3_right_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_up_up = (
+                arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
+            )
+            across_q2_right_up_up = (
+                arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
+            )
+            length_q2_right_up_up = select(
+                (
+                    (reach_right_up > 1e-11*machine_scale)
+                    & (across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up > 0.0)
+                ),
+                root(across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_right_up_up = select(
+                reach_right_up > 1e-11*machine_scale,
+                along_q2_right_up_up/length_q2_right_up_up,
+                cos(free_a2),
+            )
+            sin_q2_right_up_up = select(
+                reach_right_up > 1e-11*machine_scale,
+                across_q2_right_up_up/length_q2_right_up_up,
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_down_up = (
+                arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
+            )
+            across_q2_right_down_up = (
+                arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
+            )
+            length_q2_right_down_up = select(
+                (
+                    (reach_right_up > 1e-11*machine_scale)
+                    & (
+                        across_q2_right_down_up*across_q2_right_down_up
+                        + along_q2_right_down_up*along_q2_right_down_up > 0.0
+                    )
+                ),
+                root(across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_right_down_up = select(
+                reach_right_up > 1e-11*machine_scale,
+                along_q2_right_down_up/length_q2_right_down_up,
+                cos(free_a2),
+            )
+            sin_q2_right_down_up = select(
+                reach_right_up > 1e-11*machine_scale,
+                across_q2_right_down_up/length_q2_right_down_up,
+                sin(free_a2),
+            )
+        refusal_left_down = select(sine_square_q3_left_down >= -1e-12, 0.0, 3.0)  # out of reach
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        axis_a1_left = nearest_period(offset_a1 + atan2(sin_q1_left, cos_q1_left)/DEGREE, near_a1)  # A1: its turn
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        # A2: its turn
+        axis_a2_left_up_down = nearest_period(
+            offset_a2 + atan2(sin_q2_left_up_down, cos_q2_left_up_down)/DEGREE, near_a2,
+        )
+        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(
+            absolute(turn_a3) > 0.0,
+            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+            open_a3,
+        )
+        # A3: its turn
+        axis_a3_left_up_down = nearest_period(
+            offset_a3 + atan2(sin_q3_left_up_down, cos_q3_left_down)/DEGREE, near_a3,
+        )
+        cos_q23_left_up_down = cos_q2_left_up_down*cos_q3_left_down - sin_q2_left_up_down*sin_q3_left_up_down
+        sin_q23_left_up_down = cos_q2_left_up_down*sin_q3_left_up_down + cos_q3_left_down*sin_q2_left_up_down
+        # q4: what the sum q234 leaves
+        cos_q4_left_up_down = (
+            r22_from_q1_before_q6_left_down*cos_q23_left_up_down
+            + r21_from_q1_before_q56_left_down*sin_q23_left_up_down
+        )
+        sin_q4_left_up_down = (
+            r21_from_q1_before_q56_left_down*cos_q23_left_up_down
+            - r22_from_q1_before_q6_left_down*sin_q23_left_up_down
+        )
+        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(
+            absolute(turn_a4) > 0.0,
+            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
+            open_a4,
+        )
+        # A4: its turn
+        axis_a4_left_up_down = nearest_period(
+            offset_a4 + atan2(sin_q4_left_up_down, cos_q4_left_up_down)/DEGREE, near_a4,
+        )
+        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(
+            absolute(turn_a5) > 0.0,
+            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
+            open_a5,
+        )
+        # A5: its turn
+        axis_a5_left_down = nearest_period(offset_a5 + atan2(radius_q6_left, -r23_from_q1_left)/DEGREE, near_a5)
+        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(
+            absolute(turn_a6) > 0.0,
+            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
+            open_a6,
+        )
+        # A6: its turn
+        axis_a6_left_down = nearest_period(offset_a6 + atan2(sin_q6_left_down, cos_q6_left_down)/DEGREE, near_a6)
+        refusal_right_down = select(sine_square_q3_right_down >= -1e-12, 0.0, 3.0)  # out of reach
+        axis_a1_right = nearest_period(offset_a1 + atan2(sin_q1_right, cos_q1_right)/DEGREE, near_a1)  # A1: its turn
+        # A2: its turn
+        axis_a2_right_up_down = nearest_period(
+            offset_a2 + atan2(sin_q2_right_up_down, cos_q2_right_up_down)/DEGREE, near_a2,
+        )
+        # A3: its turn
+        axis_a3_right_up_down = nearest_period(
+            offset_a3 + atan2(sin_q3_right_up_down, cos_q3_right_down)/DEGREE, near_a3,
+        )
+        cos_q23_right_up_down = cos_q2_right_up_down*cos_q3_right_down - sin_q2_right_up_down*sin_q3_right_up_down
+        sin_q23_right_up_down = cos_q2_right_up_down*sin_q3_right_up_down + cos_q3_right_down*sin_q2_right_up_down
+        # q4: what the sum q234 leaves
+        cos_q4_right_up_down = (
+            r22_from_q1_before_q6_right_down*cos_q23_right_up_down
+            + r21_from_q1_before_q56_right_down*sin_q23_right_up_down
+        )
+        sin_q4_right_up_down = (
+            r21_from_q1_before_q56_right_down*cos_q23_right_up_down
+            - r22_from_q1_before_q6_right_down*sin_q23_right_up_down
+        )
+        # A4: its turn
+        axis_a4_right_up_down = nearest_period(
+            offset_a4 + atan2(sin_q4_right_up_down, cos_q4_right_up_down)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_right_down = nearest_period(offset_a5 + atan2(radius_q6_right, -r23_from_q1_right)/DEGREE, near_a5)
+        # A6: its turn
+        axis_a6_right_down = nearest_period(offset_a6 + atan2(sin_q6_right_down, cos_q6_right_down)/DEGREE, near_a6)
+        # A2: its turn
+        axis_a2_left_down_down = nearest_period(
+            offset_a2 + atan2(sin_q2_left_down_down, cos_q2_left_down_down)/DEGREE, near_a2,
+        )
+        # A3: its turn
+        axis_a3_left_down_down = nearest_period(
+            offset_a3 + atan2(-sin_q3_left_up_down, cos_q3_left_down)/DEGREE, near_a3,
+        )
+        cos_q23_left_down_down = cos_q2_left_down_down*cos_q3_left_down + sin_q2_left_down_down*sin_q3_left_up_down
+        sin_q23_left_down_down = cos_q3_left_down*sin_q2_left_down_down - cos_q2_left_down_down*sin_q3_left_up_down
+        # q4: what the sum q234 leaves
+        cos_q4_left_down_down = (
+            r22_from_q1_before_q6_left_down*cos_q23_left_down_down
+            + r21_from_q1_before_q56_left_down*sin_q23_left_down_down
+        )
+        sin_q4_left_down_down = (
+            r21_from_q1_before_q56_left_down*cos_q23_left_down_down
+            - r22_from_q1_before_q6_left_down*sin_q23_left_down_down
+        )
+        # A4: its turn
+        axis_a4_left_down_down = nearest_period(
+            offset_a4 + atan2(sin_q4_left_down_down, cos_q4_left_down_down)/DEGREE, near_a4,
+        )
+        # A2: its turn
+        axis_a2_right_down_down = nearest_period(
+            offset_a2 + atan2(sin_q2_right_down_down, cos_q2_right_down_down)/DEGREE, near_a2,
+        )
+        # A3: its turn
+        axis_a3_right_down_down = nearest_period(
+            offset_a3 + atan2(-sin_q3_right_up_down, cos_q3_right_down)/DEGREE, near_a3,
+        )
+        cos_q23_right_down_down = (
+            cos_q2_right_down_down*cos_q3_right_down + sin_q2_right_down_down*sin_q3_right_up_down
+        )
+        sin_q23_right_down_down = (
+            cos_q3_right_down*sin_q2_right_down_down - cos_q2_right_down_down*sin_q3_right_up_down
+        )
+        # q4: what the sum q234 leaves
+        cos_q4_right_down_down = (
+            r22_from_q1_before_q6_right_down*cos_q23_right_down_down
+            + r21_from_q1_before_q56_right_down*sin_q23_right_down_down
+        )
+        sin_q4_right_down_down = (
+            r21_from_q1_before_q56_right_down*cos_q23_right_down_down
+            - r22_from_q1_before_q6_right_down*sin_q23_right_down_down
+        )
+        # A4: its turn
+        axis_a4_right_down_down = nearest_period(
+            offset_a4 + atan2(sin_q4_right_down_down, cos_q4_right_down_down)/DEGREE, near_a4,
+        )
+        refusal_left_up = select(sine_square_q3_left_up >= -1e-12, 0.0, 3.0)  # out of reach
+        # A2: its turn
+        axis_a2_left_up_up = nearest_period(offset_a2 + atan2(sin_q2_left_up_up, cos_q2_left_up_up)/DEGREE, near_a2)
+        # A3: its turn
+        axis_a3_left_up_up = nearest_period(offset_a3 + atan2(sin_q3_left_up_up, cos_q3_left_up)/DEGREE, near_a3)
+        cos_q23_left_up_up = cos_q2_left_up_up*cos_q3_left_up - sin_q2_left_up_up*sin_q3_left_up_up
+        sin_q23_left_up_up = cos_q2_left_up_up*sin_q3_left_up_up + cos_q3_left_up*sin_q2_left_up_up
+        # q4: what the sum q234 leaves
+        cos_q4_left_up_up = (
+            r22_from_q1_before_q6_left_up*cos_q23_left_up_up + r21_from_q1_before_q56_left_up*sin_q23_left_up_up
+        )
+        sin_q4_left_up_up = (
+            r21_from_q1_before_q56_left_up*cos_q23_left_up_up - r22_from_q1_before_q6_left_up*sin_q23_left_up_up
+        )
+        # A4: its turn
+        axis_a4_left_up_up = nearest_period(offset_a4 + atan2(sin_q4_left_up_up, cos_q4_left_up_up)/DEGREE, near_a4)
+        # A5: its turn
+        axis_a5_left_up = nearest_period(offset_a5 + atan2(-radius_q6_left, -r23_from_q1_left)/DEGREE, near_a5)
+        # A6: its turn
+        axis_a6_left_up = nearest_period(offset_a6 + atan2(sin_q6_left_up, cos_q6_left_up)/DEGREE, near_a6)
+        refusal_right_up = select(sine_square_q3_right_up >= -1e-12, 0.0, 3.0)  # out of reach
+        # A2: its turn
+        axis_a2_right_up_up = nearest_period(
+            offset_a2 + atan2(sin_q2_right_up_up, cos_q2_right_up_up)/DEGREE, near_a2,
+        )
+        # A3: its turn
+        axis_a3_right_up_up = nearest_period(offset_a3 + atan2(sin_q3_right_up_up, cos_q3_right_up)/DEGREE, near_a3)
+        cos_q23_right_up_up = cos_q2_right_up_up*cos_q3_right_up - sin_q2_right_up_up*sin_q3_right_up_up
+        sin_q23_right_up_up = cos_q2_right_up_up*sin_q3_right_up_up + cos_q3_right_up*sin_q2_right_up_up
+        # q4: what the sum q234 leaves
+        cos_q4_right_up_up = (
+            r22_from_q1_before_q6_right_up*cos_q23_right_up_up + r21_from_q1_before_q56_right_up*sin_q23_right_up_up
+        )
+        sin_q4_right_up_up = (
+            r21_from_q1_before_q56_right_up*cos_q23_right_up_up - r22_from_q1_before_q6_right_up*sin_q23_right_up_up
+        )
+        # A4: its turn
+        axis_a4_right_up_up = nearest_period(
+            offset_a4 + atan2(sin_q4_right_up_up, cos_q4_right_up_up)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_right_up = nearest_period(offset_a5 + atan2(-radius_q6_right, -r23_from_q1_right)/DEGREE, near_a5)
+        # A6: its turn
+        axis_a6_right_up = nearest_period(offset_a6 + atan2(sin_q6_right_up, cos_q6_right_up)/DEGREE, near_a6)
+        # A2: its turn
+        axis_a2_left_down_up = nearest_period(
+            offset_a2 + atan2(sin_q2_left_down_up, cos_q2_left_down_up)/DEGREE, near_a2,
+        )
+        # A3: its turn
+        axis_a3_left_down_up = nearest_period(offset_a3 + atan2(-sin_q3_left_up_up, cos_q3_left_up)/DEGREE, near_a3)
+        cos_q23_left_down_up = cos_q2_left_down_up*cos_q3_left_up + sin_q2_left_down_up*sin_q3_left_up_up
+        sin_q23_left_down_up = cos_q3_left_up*sin_q2_left_down_up - cos_q2_left_down_up*sin_q3_left_up_up
+        # q4: what the sum q234 leaves
+        cos_q4_left_down_up = (
+            r22_from_q1_before_q6_left_up*cos_q23_left_down_up + r21_from_q1_before_q56_left_up*sin_q23_left_down_up
+        )
+        sin_q4_left_down_up = (
+            r21_from_q1_before_q56_left_up*cos_q23_left_down_up - r22_from_q1_before_q6_left_up*sin_q23_left_down_up
+        )
+        # A4: its turn
+        axis_a4_left_down_up = nearest_period(
+            offset_a4 + atan2(sin_q4_left_down_up, cos_q4_left_down_up)/DEGREE, near_a4,
+        )
+        # A2: its turn
+        axis_a2_right_down_up = nearest_period(
+            offset_a2 + atan2(sin_q2_right_down_up, cos_q2_right_down_up)/DEGREE, near_a2,
+        )
+        # A3: its turn
+        axis_a3_right_down_up = nearest_period(
+            offset_a3 + atan2(-sin_q3_right_up_up, cos_q3_right_up)/DEGREE, near_a3,
+        )
+        cos_q23_right_down_up = cos_q2_right_down_up*cos_q3_right_up + sin_q2_right_down_up*sin_q3_right_up_up
+        sin_q23_right_down_up = cos_q3_right_up*sin_q2_right_down_up - cos_q2_right_down_up*sin_q3_right_up_up
+        # q4: what the sum q234 leaves
+        cos_q4_right_down_up = (
+            r22_from_q1_before_q6_right_up*cos_q23_right_down_up
+            + r21_from_q1_before_q56_right_up*sin_q23_right_down_up
+        )
+        sin_q4_right_down_up = (
+            r21_from_q1_before_q56_right_up*cos_q23_right_down_up
+            - r22_from_q1_before_q6_right_up*sin_q23_right_down_up
+        )
+        # A4: its turn
+        axis_a4_right_down_up = nearest_period(
+            offset_a4 + atan2(sin_q4_right_down_up, cos_q4_right_down_up)/DEGREE, near_a4,
+        )
+        return (
+            (
+                (
+                    axis_a1_left, axis_a2_left_up_down, axis_a3_left_up_down, axis_a4_left_up_down, axis_a5_left_down,
+                    axis_a6_left_down,
+                ),
+                refused(status, refusal_left_down),
+            ),
+            (
+                (
+                    axis_a1_right, axis_a2_right_up_down, axis_a3_right_up_down, axis_a4_right_up_down,
+                    axis_a5_right_down, axis_a6_right_down,
+                ),
+                refused(status, refusal_right_down),
+            ),
+            (
+                (
+                    axis_a1_left, axis_a2_left_down_down, axis_a3_left_down_down, axis_a4_left_down_down,
+                    axis_a5_left_down, axis_a6_left_down,
+                ),
+                refused(status, refusal_left_down),
+            ),
+            (
+                (
+                    axis_a1_right, axis_a2_right_down_down, axis_a3_right_down_down, axis_a4_right_down_down,
+                    axis_a5_right_down, axis_a6_right_down,
+                ),
+                refused(status, refusal_right_down),
+            ),
+            (
+                (
+                    axis_a1_left, axis_a2_left_up_up, axis_a3_left_up_up, axis_a4_left_up_up, axis_a5_left_up,
+                    axis_a6_left_up,
+                ),
+                refused(status, refusal_left_up),
+            ),
+            (
+                (
+                    axis_a1_right, axis_a2_right_up_up, axis_a3_right_up_up, axis_a4_right_up_up, axis_a5_right_up,
+                    axis_a6_right_up,
+                ),
+                refused(status, refusal_right_up),
+            ),
+            (
+                (
+                    axis_a1_left, axis_a2_left_down_up, axis_a3_left_down_up, axis_a4_left_down_up, axis_a5_left_up,
+                    axis_a6_left_up,
+                ),
+                refused(status, refusal_left_up),
+            ),
+            (
+                (
+                    axis_a1_right, axis_a2_right_down_up, axis_a3_right_down_up, axis_a4_right_down_up,
+                    axis_a5_right_up, axis_a6_right_up,
+                ),
+                refused(status, refusal_right_up),
+            ),
+        )

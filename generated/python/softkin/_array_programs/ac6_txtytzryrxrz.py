@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -15,8 +16,10 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    everywhere,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -152,19 +155,25 @@ class ArrayPrograms(Programs):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
+        radius_a4 = root(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        if everywhere(radius_a4 > 1e-11):
+            along_a4 = r33*sigma_wrist  # a4: polar angle in the r33 and r13 equations
+            cos_a4 = along_a4/radius_a4  # its reference where it is free
+            across_a4 = r13*sigma_wrist
+            sin_a4 = across_a4/radius_a4
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            along_a4 = r33*sigma_wrist  # a4: polar angle in the r33 and r13 equations
+            length_a4 = select(radius_a4 > 1e-11, radius_a4, 1.0)
+            cos_a4 = select(radius_a4 > 1e-11, along_a4/length_a4, cos(free_a4))  # its reference where it is free
+            across_a4 = r13*sigma_wrist
+            sin_a4 = select(radius_a4 > 1e-11, across_a4/length_a4, sin(free_a4))
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
-        radius_a4 = root(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        along_a4 = r33*sigma_wrist  # a4: polar angle in the r33 and r13 equations
-        length_a4 = select(radius_a4 > 1e-11, radius_a4, 1.0)
-        cos_a4 = select(radius_a4 > 1e-11, along_a4/length_a4, cos(free_a4))  # its reference where it is free
-        across_a4 = r13*sigma_wrist
-        sin_a4 = select(radius_a4 > 1e-11, across_a4/length_a4, sin(free_a4))
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
@@ -223,3 +232,117 @@ class ArrayPrograms(Programs):
         # limits of A6
         require(status, (axis_a6 >= lowest_a6) & (axis_a6 <= highest_a6), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        turn_a4, turn_a5, turn_a6 = turns
+        _, _, _, ref_a4, ref_a5, ref_a6 = reference
+        k = self.constants
+        flange_x = k.flange_x
+        flange_y = k.flange_y
+        flange_z = k.flange_z
+        mid_a4 = k.mid_a4
+        mid_a5 = k.mid_a5
+        mid_a6 = k.mid_a6
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        offset_a4 = k.offset_a4
+        offset_a5 = k.offset_a5
+        offset_a6 = k.offset_a6
+        single_a4 = k.single_a4
+        single_a5 = k.single_a5
+        single_a6 = k.single_a6
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
+                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
+                & (absolute(r33) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
+        require(
+            status,
+            (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9),
+            Status.BAD_INPUT,
+        )
+        # columns of length one, at right angles
+        require(
+            status,
+            (
+                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
+                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
+                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
+                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
+                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
+            ),
+            Status.BAD_INPUT,
+        )
+        # a right-handed frame
+        require(
+            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
+            Status.BAD_INPUT,
+        )
+        radius_a4 = root(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        if everywhere(radius_a4 > 1e-11):
+            cos_a4_upright = r33/radius_a4  # its reference where it is free
+            sin_a4_upright = r13/radius_a4
+            cos_a4_flipped = -cos_a4_upright  # its reference where it is free
+            sin_a4_flipped = -sin_a4_upright
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            length_a4 = select(radius_a4 > 1e-11, radius_a4, 1.0)
+            cos_a4_upright = select(radius_a4 > 1e-11, r33/length_a4, cos(free_a4))  # its reference where it is free
+            sin_a4_upright = select(radius_a4 > 1e-11, r13/length_a4, sin(free_a4))
+            cos_a4_flipped = select(radius_a4 > 1e-11, -r33/length_a4, cos(free_a4))  # its reference where it is free
+            sin_a4_flipped = select(radius_a4 > 1e-11, -r13/length_a4, sin(free_a4))
+        wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
+        axis_a1 = offset_a1 + wrist_x
+        wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
+        axis_a2 = offset_a2 + wrist_y
+        wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
+        axis_a3 = offset_a3 + wrist_z
+        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(
+            absolute(turn_a4) > 0.0,
+            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
+            open_a4,
+        )
+        # A4: its turn
+        axis_a4_upright = nearest_period(offset_a4 + atan2(sin_a4_upright, cos_a4_upright)/DEGREE, near_a4)
+        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(
+            absolute(turn_a5) > 0.0,
+            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
+            open_a5,
+        )
+        axis_a5_upright = nearest_period(offset_a5 + atan2(-r23, radius_a4)/DEGREE, near_a5)  # A5: its turn
+        r11_from_a4_upright = r11*cos_a4_upright - r31*sin_a4_upright
+        r12_from_a4_upright = r12*cos_a4_upright - r32*sin_a4_upright
+        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(
+            absolute(turn_a6) > 0.0,
+            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
+            open_a6,
+        )
+        # A6: its turn
+        axis_a6_upright = nearest_period(offset_a6 + atan2(-r12_from_a4_upright, r11_from_a4_upright)/DEGREE, near_a6)
+        # A4: its turn
+        axis_a4_flipped = nearest_period(offset_a4 + atan2(sin_a4_flipped, cos_a4_flipped)/DEGREE, near_a4)
+        axis_a5_flipped = nearest_period(offset_a5 + atan2(-r23, -radius_a4)/DEGREE, near_a5)  # A5: its turn
+        r11_from_a4_flipped = r11*cos_a4_flipped - r31*sin_a4_flipped
+        r12_from_a4_flipped = r12*cos_a4_flipped - r32*sin_a4_flipped
+        # A6: its turn
+        axis_a6_flipped = nearest_period(offset_a6 + atan2(-r12_from_a4_flipped, r11_from_a4_flipped)/DEGREE, near_a6)
+        return (
+            ((axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright), refused(status, 0.0)),
+            ((axis_a1, axis_a2, axis_a3, axis_a4_flipped, axis_a5_flipped, axis_a6_flipped), refused(status, 0.0)),
+        )

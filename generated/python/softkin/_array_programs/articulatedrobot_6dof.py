@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -15,8 +16,10 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    everywhere,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -222,20 +225,26 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1 = root(sine_square_q1)*sigma_arm
-        # its reference where it is free
-        cos_q1 = select(
-            distance_q1 > 1e-11*machine_scale,
-            (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1,
-            cos(free_a1),
-        )
-        sin_q1 = select(
-            distance_q1 > 1e-11*machine_scale,
-            (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1,
-            sin(free_a1),
-        )
+        if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1 = root(sine_square_q1)*sigma_arm
+            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1 = root(sine_square_q1)*sigma_arm
+            # its reference where it is free
+            cos_q1 = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1 = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1,
+                sin(free_a1),
+            )
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
@@ -247,6 +256,57 @@ class ArrayPrograms(Programs):
         )
         # out of reach
         require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
+        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
+        cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
+        sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_q2 = d4*cos_q3 - a3*sin_q3
+            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+            length_q2 = select(
+                across_q2*across_q2 + along_q2*along_q2 > 0.0,
+                root(across_q2*across_q2 + along_q2*along_q2),
+                1.0,
+            )
+            cos_q2 = along_q2/length_q2  # its reference where it is free
+            sin_q2 = across_q2/length_q2
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2 = d4*cos_q3 - a3*sin_q3
+            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+            length_q2 = select(
+                (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
+                root(across_q2*across_q2 + along_q2*along_q2),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
+            sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
+        r13_from_q1 = r13*cos_q1 + r23*sin_q1
+        sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
+        cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        r23_from_q1 = r23*cos_q1 - r13*sin_q1
+        # q4: direction and distance of a point
+        radius_q4 = root(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        if everywhere(radius_q4 > 1e-11):
+            along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
+            cos_q4 = along_q4/radius_q4  # its reference where it is free
+            across_q4 = r23_from_q1*sigma_hand
+            sin_q4 = across_q4/radius_q4
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
+            length_q4 = select(radius_q4 > 1e-11, radius_q4, 1.0)
+            cos_q4 = select(radius_q4 > 1e-11, along_q4/length_q4, cos(free_a4))  # its reference where it is free
+            across_q4 = r23_from_q1*sigma_hand
+            sin_q4 = select(radius_q4 > 1e-11, across_q4/length_q4, sin(free_a4))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -254,24 +314,6 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
-        sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
-        cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
-        sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
-        arm_along_q2 = d4*cos_q3 - a3*sin_q3
-        arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        length_q2 = select(
-            (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
-            root(across_q2*across_q2 + along_q2*along_q2),
-            1.0,
-        )
-        # its reference where it is free
-        cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
-        sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -286,19 +328,6 @@ class ArrayPrograms(Programs):
             open_a3,
         )
         axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
-        r13_from_q1 = r13*cos_q1 + r23*sin_q1
-        sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
-        cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
-        r23_from_q1 = r23*cos_q1 - r13*sin_q1
-        # q4: direction and distance of a point
-        radius_q4 = root(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
-        along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
-        length_q4 = select(radius_q4 > 1e-11, radius_q4, 1.0)
-        cos_q4 = select(radius_q4 > 1e-11, along_q4/length_q4, cos(free_a4))  # its reference where it is free
-        across_q4 = r23_from_q1*sigma_hand
-        sin_q4 = select(radius_q4 > 1e-11, across_q4/length_q4, sin(free_a4))
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
@@ -363,3 +392,682 @@ class ArrayPrograms(Programs):
         # limits of A6
         require(status, (axis_a6 >= lowest_a6) & (axis_a6 <= highest_a6), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
+        ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
+        k = self.constants
+        a1 = k.a1
+        a2 = k.a2
+        a3 = k.a3
+        d1 = k.d1
+        d3 = k.d3
+        d4 = k.d4
+        d6 = k.d6
+        effective_q3 = k.effective_q3
+        machine_scale = k.machine_scale
+        mid_a1 = k.mid_a1
+        mid_a2 = k.mid_a2
+        mid_a3 = k.mid_a3
+        mid_a4 = k.mid_a4
+        mid_a5 = k.mid_a5
+        mid_a6 = k.mid_a6
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        offset_a4 = k.offset_a4
+        offset_a5 = k.offset_a5
+        offset_a6 = k.offset_a6
+        single_a1 = k.single_a1
+        single_a2 = k.single_a2
+        single_a3 = k.single_a3
+        single_a4 = k.single_a4
+        single_a5 = k.single_a5
+        single_a6 = k.single_a6
+        swing_scale_q3 = k.swing_scale_q3
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
+                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
+                & (absolute(r33) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
+        require(
+            status,
+            (
+                (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
+                & (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
+        # columns of length one, at right angles
+        require(
+            status,
+            (
+                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
+                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
+                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
+                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
+                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
+            ),
+            Status.BAD_INPUT,
+        )
+        # a right-handed frame
+        require(
+            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
+            Status.BAD_INPUT,
+        )
+        wrist_x = x - d6*r13  # the point that the last joints turn about
+        wrist_y = y - d6*r23
+        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        # q1: aimed by the z_from_q1 equation
+        divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
+        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
+        # out of reach
+        require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
+        free_a1 = (ref_a1 - offset_a1)*DEGREE
+        cos_swing_q1 = -d3/divisor_q1
+        sin_swing_q1_front = root(sine_square_q1)
+        if everywhere(distance_q1 > 1e-11*machine_scale):
+            # its reference where it is free
+            cos_q1_front = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1
+            sin_q1_front = (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1
+        else:
+            # its reference where it is free
+            cos_q1_front = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1_front = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1,
+                sin(free_a1),
+            )
+        wrist_x_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
+        wrist_z = z - d6*r33
+        wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        reach_front = root(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
+        # kept as a product
+        sine_square_q3_front = (
+            (effective_q3 + reach_front - a2)*(a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
+            *(a2 + reach_front - effective_q3)/(swing_scale_q3*swing_scale_q3)
+        )
+        free_a2 = (ref_a2 - offset_a2)*DEGREE
+        cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        sin_swing_q3_front_down = -root(sine_square_q3_front)
+        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 - d4*sin_swing_q3_front_down/effective_q3
+        sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3 + d4*cos_swing_q3_front/effective_q3
+        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3 + d4*sin_swing_q3_front_down/effective_q3
+        sin_q3_front_up = d4*cos_swing_q3_front/effective_q3 - a3*sin_swing_q3_front_down/effective_q3
+        if everywhere(reach_front > 1e-11*machine_scale):
+            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
+            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+            across_q2_front_down = (
+                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
+            )
+            length_q2_front_down = select(
+                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0,
+                root(across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down),
+                1.0,
+            )
+            cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
+            sin_q2_front_down = across_q2_front_down/length_q2_front_down
+            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
+            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
+            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
+            length_q2_front_up = select(
+                across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0,
+                root(across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up),
+                1.0,
+            )
+            cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
+            sin_q2_front_up = across_q2_front_up/length_q2_front_up
+        else:
+            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
+            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+            across_q2_front_down = (
+                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
+            )
+            length_q2_front_down = select(
+                (
+                    (reach_front > 1e-11*machine_scale)
+                    & (across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0)
+                ),
+                root(across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_front_down = select(
+                reach_front > 1e-11*machine_scale,
+                along_q2_front_down/length_q2_front_down,
+                cos(free_a2),
+            )
+            sin_q2_front_down = select(
+                reach_front > 1e-11*machine_scale,
+                across_q2_front_down/length_q2_front_down,
+                sin(free_a2),
+            )
+            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
+            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
+            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
+            length_q2_front_up = select(
+                (
+                    (reach_front > 1e-11*machine_scale)
+                    & (across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0)
+                ),
+                root(across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_front_up = select(
+                reach_front > 1e-11*machine_scale,
+                along_q2_front_up/length_q2_front_up,
+                cos(free_a2),
+            )
+            sin_q2_front_up = select(
+                reach_front > 1e-11*machine_scale,
+                across_q2_front_up/length_q2_front_up,
+                sin(free_a2),
+            )
+        if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
+        else:
+            # its reference where it is free
+            cos_q1_back = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1_back = select(
+                distance_q1 > 1e-11*machine_scale,
+                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1,
+                sin(free_a1),
+            )
+        wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
+        reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
+        # kept as a product
+        sine_square_q3_back = (
+            (effective_q3 + reach_back - a2)*(a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
+            *(a2 + reach_back - effective_q3)/(swing_scale_q3*swing_scale_q3)
+        )
+        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        sin_swing_q3_back_down = -root(sine_square_q3_back)
+        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3 - d4*sin_swing_q3_back_down/effective_q3
+        sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3 + d4*cos_swing_q3_back/effective_q3
+        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3 + d4*sin_swing_q3_back_down/effective_q3
+        sin_q3_back_up = d4*cos_swing_q3_back/effective_q3 - a3*sin_swing_q3_back_down/effective_q3
+        if everywhere(reach_back > 1e-11*machine_scale):
+            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
+            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
+            length_q2_back_down = select(
+                across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0,
+                root(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down),
+                1.0,
+            )
+            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
+            sin_q2_back_down = across_q2_back_down/length_q2_back_down
+            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
+            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
+            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
+            length_q2_back_up = select(
+                across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0,
+                root(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up),
+                1.0,
+            )
+            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
+            sin_q2_back_up = across_q2_back_up/length_q2_back_up
+        else:
+            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
+            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
+            length_q2_back_down = select(
+                (
+                    (reach_back > 1e-11*machine_scale)
+                    & (across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0)
+                ),
+                root(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_back_down = select(
+                reach_back > 1e-11*machine_scale,
+                along_q2_back_down/length_q2_back_down,
+                cos(free_a2),
+            )
+            sin_q2_back_down = select(
+                reach_back > 1e-11*machine_scale,
+                across_q2_back_down/length_q2_back_down,
+                sin(free_a2),
+            )
+            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
+            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
+            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
+            length_q2_back_up = select(
+                (
+                    (reach_back > 1e-11*machine_scale)
+                    & (across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0)
+                ),
+                root(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_back_up = select(reach_back > 1e-11*machine_scale, along_q2_back_up/length_q2_back_up, cos(free_a2))
+            sin_q2_back_up = select(reach_back > 1e-11*machine_scale, across_q2_back_up/length_q2_back_up, sin(free_a2))
+        free_a4 = (ref_a4 - offset_a4)*DEGREE
+        r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
+        sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
+        cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
+        r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
+        r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
+        # q4: direction and distance of a point
+        radius_q4_front_down = root(
+            r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
+        )
+        if everywhere(radius_q4_front_down > 1e-11):
+            cos_q4_front_down_down = -r13_from_q123_front_down/radius_q4_front_down  # its reference where it is free
+            sin_q4_front_down_down = r23_from_q1_front/radius_q4_front_down
+            cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
+            sin_q4_front_down_up = -sin_q4_front_down_down
+        else:
+            length_q4_front_down = select(radius_q4_front_down > 1e-11, radius_q4_front_down, 1.0)
+            # its reference where it is free
+            cos_q4_front_down_down = select(
+                radius_q4_front_down > 1e-11,
+                -r13_from_q123_front_down/length_q4_front_down,
+                cos(free_a4),
+            )
+            sin_q4_front_down_down = select(
+                radius_q4_front_down > 1e-11,
+                r23_from_q1_front/length_q4_front_down,
+                sin(free_a4),
+            )
+            # its reference where it is free
+            cos_q4_front_down_up = select(
+                radius_q4_front_down > 1e-11,
+                r13_from_q123_front_down/length_q4_front_down,
+                cos(free_a4),
+            )
+            sin_q4_front_down_up = select(
+                radius_q4_front_down > 1e-11,
+                -r23_from_q1_front/length_q4_front_down,
+                sin(free_a4),
+            )
+        r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
+        sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
+        cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
+        r13_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down
+        r23_from_q1_back = r23*cos_q1_back - r13*sin_q1_back
+        # q4: direction and distance of a point
+        radius_q4_back_down = root(
+            r13_from_q123_back_down*r13_from_q123_back_down + r23_from_q1_back*r23_from_q1_back
+        )
+        if everywhere(radius_q4_back_down > 1e-11):
+            cos_q4_back_down_down = -r13_from_q123_back_down/radius_q4_back_down  # its reference where it is free
+            sin_q4_back_down_down = r23_from_q1_back/radius_q4_back_down
+            cos_q4_back_down_up = -cos_q4_back_down_down  # its reference where it is free
+            sin_q4_back_down_up = -sin_q4_back_down_down
+        else:
+            length_q4_back_down = select(radius_q4_back_down > 1e-11, radius_q4_back_down, 1.0)
+            # its reference where it is free
+            cos_q4_back_down_down = select(
+                radius_q4_back_down > 1e-11,
+                -r13_from_q123_back_down/length_q4_back_down,
+                cos(free_a4),
+            )
+            sin_q4_back_down_down = select(
+                radius_q4_back_down > 1e-11,
+                r23_from_q1_back/length_q4_back_down,
+                sin(free_a4),
+            )
+            # its reference where it is free
+            cos_q4_back_down_up = select(
+                radius_q4_back_down > 1e-11,
+                r13_from_q123_back_down/length_q4_back_down,
+                cos(free_a4),
+            )
+            sin_q4_back_down_up = select(radius_q4_back_down > 1e-11, -r23_from_q1_back/length_q4_back_down, sin(free_a4))
+        sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up
+        cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up
+        r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up
+        # q4: direction and distance of a point
+        radius_q4_front_up = root(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
+        if everywhere(radius_q4_front_up > 1e-11):
+            cos_q4_front_up_down = -r13_from_q123_front_up/radius_q4_front_up  # its reference where it is free
+            sin_q4_front_up_down = r23_from_q1_front/radius_q4_front_up
+            cos_q4_front_up_up = -cos_q4_front_up_down  # its reference where it is free
+            sin_q4_front_up_up = -sin_q4_front_up_down
+        else:
+            length_q4_front_up = select(radius_q4_front_up > 1e-11, radius_q4_front_up, 1.0)
+            # its reference where it is free
+            cos_q4_front_up_down = select(
+                radius_q4_front_up > 1e-11,
+                -r13_from_q123_front_up/length_q4_front_up,
+                cos(free_a4),
+            )
+            sin_q4_front_up_down = select(radius_q4_front_up > 1e-11, r23_from_q1_front/length_q4_front_up, sin(free_a4))
+            # its reference where it is free
+            cos_q4_front_up_up = select(
+                radius_q4_front_up > 1e-11,
+                r13_from_q123_front_up/length_q4_front_up,
+                cos(free_a4),
+            )
+            sin_q4_front_up_up = select(radius_q4_front_up > 1e-11, -r23_from_q1_front/length_q4_front_up, sin(free_a4))
+        sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up
+        cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up
+        r13_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up
+        # q4: direction and distance of a point
+        radius_q4_back_up = root(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
+        if everywhere(radius_q4_back_up > 1e-11):
+            cos_q4_back_up_down = -r13_from_q123_back_up/radius_q4_back_up  # its reference where it is free
+            sin_q4_back_up_down = r23_from_q1_back/radius_q4_back_up
+            cos_q4_back_up_up = -cos_q4_back_up_down  # its reference where it is free
+            sin_q4_back_up_up = -sin_q4_back_up_down
+        else:
+            length_q4_back_up = select(radius_q4_back_up > 1e-11, radius_q4_back_up, 1.0)
+            # its reference where it is free
+            cos_q4_back_up_down = select(
+                radius_q4_back_up > 1e-11,
+                -r13_from_q123_back_up/length_q4_back_up,
+                cos(free_a4),
+            )
+            sin_q4_back_up_down = select(radius_q4_back_up > 1e-11, r23_from_q1_back/length_q4_back_up, sin(free_a4))
+            # its reference where it is free
+            cos_q4_back_up_up = select(radius_q4_back_up > 1e-11, r13_from_q123_back_up/length_q4_back_up, cos(free_a4))
+            sin_q4_back_up_up = select(radius_q4_back_up > 1e-11, -r23_from_q1_back/length_q4_back_up, sin(free_a4))
+        refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # out of reach
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        axis_a1_front = nearest_period(offset_a1 + atan2(sin_q1_front, cos_q1_front)/DEGREE, near_a1)  # A1: its turn
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        # A2: its turn
+        axis_a2_front_down = nearest_period(offset_a2 + atan2(sin_q2_front_down, cos_q2_front_down)/DEGREE, near_a2)
+        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(
+            absolute(turn_a3) > 0.0,
+            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+            open_a3,
+        )
+        # A3: its turn
+        axis_a3_front_down = nearest_period(offset_a3 + atan2(sin_q3_front_down, cos_q3_front_down)/DEGREE, near_a3)
+        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(
+            absolute(turn_a4) > 0.0,
+            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
+            open_a4,
+        )
+        # A4: its turn
+        axis_a4_front_down_down = nearest_period(
+            offset_a4 + atan2(sin_q4_front_down_down, cos_q4_front_down_down)/DEGREE, near_a4,
+        )
+        r23_from_q123_front_down = -r13_from_q1_front*cos_q23_front_down - r33*sin_q23_front_down
+        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(
+            absolute(turn_a5) > 0.0,
+            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
+            open_a5,
+        )
+        # A5: its turn
+        axis_a5_front_down_down = nearest_period(
+            offset_a5 + atan2(radius_q4_front_down, -r23_from_q123_front_down)/DEGREE, near_a5,
+        )
+        r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
+        r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
+        r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down
+        r21_from_q1234_front_down_down = (
+            -r21_from_q1_front*cos_q4_front_down_down - r11_from_q123_front_down*sin_q4_front_down_down
+        )
+        r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front
+        r12_from_q1_front = r12*cos_q1_front + r22*sin_q1_front
+        r12_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down
+        r22_from_q1234_front_down_down = (
+            -r22_from_q1_front*cos_q4_front_down_down - r12_from_q123_front_down*sin_q4_front_down_down
+        )
+        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(
+            absolute(turn_a6) > 0.0,
+            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
+            open_a6,
+        )
+        # A6: its turn
+        axis_a6_front_down_down = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down)/DEGREE, near_a6,
+        )
+        refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # out of reach
+        axis_a1_back = nearest_period(offset_a1 + atan2(sin_q1_back, cos_q1_back)/DEGREE, near_a1)  # A1: its turn
+        # A2: its turn
+        axis_a2_back_down = nearest_period(offset_a2 + atan2(sin_q2_back_down, cos_q2_back_down)/DEGREE, near_a2)
+        # A3: its turn
+        axis_a3_back_down = nearest_period(offset_a3 + atan2(sin_q3_back_down, cos_q3_back_down)/DEGREE, near_a3)
+        # A4: its turn
+        axis_a4_back_down_down = nearest_period(
+            offset_a4 + atan2(sin_q4_back_down_down, cos_q4_back_down_down)/DEGREE, near_a4,
+        )
+        r23_from_q123_back_down = -r13_from_q1_back*cos_q23_back_down - r33*sin_q23_back_down
+        # A5: its turn
+        axis_a5_back_down_down = nearest_period(
+            offset_a5 + atan2(radius_q4_back_down, -r23_from_q123_back_down)/DEGREE, near_a5,
+        )
+        r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
+        r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
+        r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
+        r21_from_q1234_back_down_down = (
+            -r21_from_q1_back*cos_q4_back_down_down - r11_from_q123_back_down*sin_q4_back_down_down
+        )
+        r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back
+        r12_from_q1_back = r12*cos_q1_back + r22*sin_q1_back
+        r12_from_q123_back_down = r32*cos_q23_back_down - r12_from_q1_back*sin_q23_back_down
+        r22_from_q1234_back_down_down = (
+            -r22_from_q1_back*cos_q4_back_down_down - r12_from_q123_back_down*sin_q4_back_down_down
+        )
+        # A6: its turn
+        axis_a6_back_down_down = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down)/DEGREE, near_a6,
+        )
+        # A2: its turn
+        axis_a2_front_up = nearest_period(offset_a2 + atan2(sin_q2_front_up, cos_q2_front_up)/DEGREE, near_a2)
+        # A3: its turn
+        axis_a3_front_up = nearest_period(offset_a3 + atan2(sin_q3_front_up, cos_q3_front_up)/DEGREE, near_a3)
+        # A4: its turn
+        axis_a4_front_up_down = nearest_period(
+            offset_a4 + atan2(sin_q4_front_up_down, cos_q4_front_up_down)/DEGREE, near_a4,
+        )
+        r23_from_q123_front_up = -r13_from_q1_front*cos_q23_front_up - r33*sin_q23_front_up
+        # A5: its turn
+        axis_a5_front_up_down = nearest_period(
+            offset_a5 + atan2(radius_q4_front_up, -r23_from_q123_front_up)/DEGREE, near_a5,
+        )
+        r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
+        r21_from_q1234_front_up_down = (
+            -r21_from_q1_front*cos_q4_front_up_down - r11_from_q123_front_up*sin_q4_front_up_down
+        )
+        r12_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up
+        r22_from_q1234_front_up_down = (
+            -r22_from_q1_front*cos_q4_front_up_down - r12_from_q123_front_up*sin_q4_front_up_down
+        )
+        # A6: its turn
+        axis_a6_front_up_down = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down)/DEGREE, near_a6,
+        )
+        # A2: its turn
+        axis_a2_back_up = nearest_period(offset_a2 + atan2(sin_q2_back_up, cos_q2_back_up)/DEGREE, near_a2)
+        # A3: its turn
+        axis_a3_back_up = nearest_period(offset_a3 + atan2(sin_q3_back_up, cos_q3_back_up)/DEGREE, near_a3)
+        # A4: its turn
+        axis_a4_back_up_down = nearest_period(
+            offset_a4 + atan2(sin_q4_back_up_down, cos_q4_back_up_down)/DEGREE, near_a4,
+        )
+        r23_from_q123_back_up = -r13_from_q1_back*cos_q23_back_up - r33*sin_q23_back_up
+        # A5: its turn
+        axis_a5_back_up_down = nearest_period(
+            offset_a5 + atan2(radius_q4_back_up, -r23_from_q123_back_up)/DEGREE, near_a5,
+        )
+        r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
+        r21_from_q1234_back_up_down = (
+            -r21_from_q1_back*cos_q4_back_up_down - r11_from_q123_back_up*sin_q4_back_up_down
+        )
+        r12_from_q123_back_up = r32*cos_q23_back_up - r12_from_q1_back*sin_q23_back_up
+        r22_from_q1234_back_up_down = (
+            -r22_from_q1_back*cos_q4_back_up_down - r12_from_q123_back_up*sin_q4_back_up_down
+        )
+        # A6: its turn
+        axis_a6_back_up_down = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down)/DEGREE, near_a6,
+        )
+        # A4: its turn
+        axis_a4_front_down_up = nearest_period(
+            offset_a4 + atan2(sin_q4_front_down_up, cos_q4_front_down_up)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_front_down_up = nearest_period(
+            offset_a5 + atan2(-radius_q4_front_down, -r23_from_q123_front_down)/DEGREE, near_a5,
+        )
+        r21_from_q1234_front_down_up = (
+            -r21_from_q1_front*cos_q4_front_down_up - r11_from_q123_front_down*sin_q4_front_down_up
+        )
+        r22_from_q1234_front_down_up = (
+            -r22_from_q1_front*cos_q4_front_down_up - r12_from_q123_front_down*sin_q4_front_down_up
+        )
+        # A6: its turn
+        axis_a6_front_down_up = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up)/DEGREE, near_a6,
+        )
+        # A4: its turn
+        axis_a4_back_down_up = nearest_period(
+            offset_a4 + atan2(sin_q4_back_down_up, cos_q4_back_down_up)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_back_down_up = nearest_period(
+            offset_a5 + atan2(-radius_q4_back_down, -r23_from_q123_back_down)/DEGREE, near_a5,
+        )
+        r21_from_q1234_back_down_up = (
+            -r21_from_q1_back*cos_q4_back_down_up - r11_from_q123_back_down*sin_q4_back_down_up
+        )
+        r22_from_q1234_back_down_up = (
+            -r22_from_q1_back*cos_q4_back_down_up - r12_from_q123_back_down*sin_q4_back_down_up
+        )
+        # A6: its turn
+        axis_a6_back_down_up = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up)/DEGREE, near_a6,
+        )
+        # A4: its turn
+        axis_a4_front_up_up = nearest_period(
+            offset_a4 + atan2(sin_q4_front_up_up, cos_q4_front_up_up)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_front_up_up = nearest_period(
+            offset_a5 + atan2(-radius_q4_front_up, -r23_from_q123_front_up)/DEGREE, near_a5,
+        )
+        r21_from_q1234_front_up_up = -r21_from_q1_front*cos_q4_front_up_up - r11_from_q123_front_up*sin_q4_front_up_up
+        r22_from_q1234_front_up_up = -r22_from_q1_front*cos_q4_front_up_up - r12_from_q123_front_up*sin_q4_front_up_up
+        # A6: its turn
+        axis_a6_front_up_up = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up)/DEGREE, near_a6,
+        )
+        # A4: its turn
+        axis_a4_back_up_up = nearest_period(offset_a4 + atan2(sin_q4_back_up_up, cos_q4_back_up_up)/DEGREE, near_a4)
+        # A5: its turn
+        axis_a5_back_up_up = nearest_period(
+            offset_a5 + atan2(-radius_q4_back_up, -r23_from_q123_back_up)/DEGREE, near_a5,
+        )
+        r21_from_q1234_back_up_up = -r21_from_q1_back*cos_q4_back_up_up - r11_from_q123_back_up*sin_q4_back_up_up
+        r22_from_q1234_back_up_up = -r22_from_q1_back*cos_q4_back_up_up - r12_from_q123_back_up*sin_q4_back_up_up
+        # A6: its turn
+        axis_a6_back_up_up = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up)/DEGREE, near_a6,
+        )
+        return (
+            (
+                (
+                    axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_down,
+                    axis_a5_front_down_down, axis_a6_front_down_down,
+                ),
+                refused(status, refusal_front),
+            ),
+            (
+                (
+                    axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_down,
+                    axis_a5_back_down_down, axis_a6_back_down_down,
+                ),
+                refused(status, refusal_back),
+            ),
+            (
+                (
+                    axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_down, axis_a5_front_up_down,
+                    axis_a6_front_up_down,
+                ),
+                refused(status, refusal_front),
+            ),
+            (
+                (
+                    axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_down, axis_a5_back_up_down,
+                    axis_a6_back_up_down,
+                ),
+                refused(status, refusal_back),
+            ),
+            (
+                (
+                    axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_up,
+                    axis_a5_front_down_up, axis_a6_front_down_up,
+                ),
+                refused(status, refusal_front),
+            ),
+            (
+                (
+                    axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_up, axis_a5_back_down_up,
+                    axis_a6_back_down_up,
+                ),
+                refused(status, refusal_back),
+            ),
+            (
+                (
+                    axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_up, axis_a5_front_up_up,
+                    axis_a6_front_up_up,
+                ),
+                refused(status, refusal_front),
+            ),
+            (
+                (
+                    axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_up, axis_a5_back_up_up,
+                    axis_a6_back_up_up,
+                ),
+                refused(status, refusal_back),
+            ),
+        )

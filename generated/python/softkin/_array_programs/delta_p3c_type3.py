@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -17,6 +18,7 @@ from softkin._array import (
     cos,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -366,3 +368,356 @@ class ArrayPrograms(Programs):
         # limits of A3
         require(status, (axis_a3 >= lowest_a3) & (axis_a3 <= highest_a3), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        turn_a1, turn_a2, turn_a3 = turns
+        ref_a1, ref_a2, ref_a3 = reference
+        k = self.constants
+        assembly_sign = k.assembly_sign
+        base_radius_1 = k.base_radius_1
+        base_radius_2 = k.base_radius_2
+        base_radius_3 = k.base_radius_3
+        cos_azimuth_1 = k.cos_azimuth_1
+        cos_azimuth_2 = k.cos_azimuth_2
+        cos_azimuth_3 = k.cos_azimuth_3
+        inner_arm_1 = k.inner_arm_1
+        inner_arm_2 = k.inner_arm_2
+        inner_arm_3 = k.inner_arm_3
+        mid_a1 = k.mid_a1
+        mid_a2 = k.mid_a2
+        mid_a3 = k.mid_a3
+        min_type2_margin = k.min_type2_margin
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        outer_arm_1 = k.outer_arm_1
+        outer_arm_2 = k.outer_arm_2
+        outer_arm_3 = k.outer_arm_3
+        sin_azimuth_1 = k.sin_azimuth_1
+        sin_azimuth_2 = k.sin_azimuth_2
+        sin_azimuth_3 = k.sin_azimuth_3
+        single_a1 = k.single_a1
+        single_a2 = k.single_a2
+        single_a3 = k.single_a3
+        tcp_radius_1 = k.tcp_radius_1
+        tcp_radius_2 = k.tcp_radius_2
+        tcp_radius_3 = k.tcp_radius_3
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
+            Status.BAD_INPUT,
+        )
+        span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
+        span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
+        along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
+        effective_a1 = root(along_a1*along_a1 + z*z)  # effective length that the angle turns
+        # the effective length is too short to be aimed
+        require(status, effective_a1 > 1e-9*inner_arm_1, Status.UNREACHABLE)
+        divisor_a1 = select(effective_a1 > 1e-9*inner_arm_1, effective_a1, 1.0)
+        swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
+        # kept as a product
+        sine_square_a1 = (
+            (
+                2.0*divisor_a1*inner_arm_1 + inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z
+                - outer_arm_1*outer_arm_1
+            )
+            *(
+                2.0*divisor_a1*inner_arm_1 + outer_arm_1*outer_arm_1 - inner_arm_1*inner_arm_1 - span_1_x*span_1_x
+                - span_1_y*span_1_y - z*z
+            )
+            /(swing_scale_a1*swing_scale_a1)
+        )
+        # out of reach
+        require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
+        span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
+        span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
+        along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
+        effective_a2 = root(along_a2*along_a2 + z*z)  # effective length that the angle turns
+        # the effective length is too short to be aimed
+        require(status, effective_a2 > 1e-9*inner_arm_2, Status.UNREACHABLE)
+        divisor_a2 = select(effective_a2 > 1e-9*inner_arm_2, effective_a2, 1.0)
+        swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
+        # kept as a product
+        sine_square_a2 = (
+            (
+                2.0*divisor_a2*inner_arm_2 + inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z
+                - outer_arm_2*outer_arm_2
+            )
+            *(
+                2.0*divisor_a2*inner_arm_2 + outer_arm_2*outer_arm_2 - inner_arm_2*inner_arm_2 - span_2_x*span_2_x
+                - span_2_y*span_2_y - z*z
+            )
+            /(swing_scale_a2*swing_scale_a2)
+        )
+        # out of reach
+        require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
+        span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
+        span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
+        along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
+        effective_a3 = root(along_a3*along_a3 + z*z)  # effective length that the angle turns
+        # the effective length is too short to be aimed
+        require(status, effective_a3 > 1e-9*inner_arm_3, Status.UNREACHABLE)
+        divisor_a3 = select(effective_a3 > 1e-9*inner_arm_3, effective_a3, 1.0)
+        swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
+        # kept as a product
+        sine_square_a3 = (
+            (
+                2.0*divisor_a3*inner_arm_3 + inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z
+                - outer_arm_3*outer_arm_3
+            )
+            *(
+                2.0*divisor_a3*inner_arm_3 + outer_arm_3*outer_arm_3 - inner_arm_3*inner_arm_3 - span_3_x*span_3_x
+                - span_3_y*span_3_y - z*z
+            )
+            /(swing_scale_a3*swing_scale_a3)
+        )
+        # out of reach
+        require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
+        cos_swing_a1 = (
+            (inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z - outer_arm_1*outer_arm_1)
+            /swing_scale_a1
+        )
+        sin_swing_a1_outward = -root(sine_square_a1)
+        cos_a1_outward = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1_outward/divisor_a1
+        # rod 1
+        pivot_1_x_outward = (
+            base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1_outward*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
+        )
+        rod_1_x_outward = x - pivot_1_x_outward
+        # rod 1
+        pivot_1_y_outward = (
+            base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1_outward*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        )
+        rod_1_y_outward = y - pivot_1_y_outward
+        sin_a1_outward = along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
+        pivot_1_z_outward = -inner_arm_1*sin_a1_outward  # rod 1
+        rod_1_z_outward = z - pivot_1_z_outward
+        cos_swing_a2 = (
+            (inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z - outer_arm_2*outer_arm_2)
+            /swing_scale_a2
+        )
+        sin_swing_a2_outward = -root(sine_square_a2)
+        cos_a2_outward = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2_outward/divisor_a2
+        # rod 2
+        pivot_2_x_outward = (
+            base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2_outward*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        )
+        rod_2_x_outward = x - pivot_2_x_outward
+        # rod 2
+        pivot_2_y_outward = (
+            base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2_outward*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        )
+        rod_2_y_outward = y - pivot_2_y_outward
+        sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
+        pivot_2_z_outward = -inner_arm_2*sin_a2_outward  # rod 2
+        rod_2_z_outward = z - pivot_2_z_outward
+        cos_swing_a3 = (
+            (inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z - outer_arm_3*outer_arm_3)
+            /swing_scale_a3
+        )
+        sin_swing_a3_outward = -root(sine_square_a3)
+        cos_a3_outward = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3_outward/divisor_a3
+        # rod 3
+        pivot_3_x_outward = (
+            base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3_outward*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+        )
+        rod_3_x_outward = x - pivot_3_x_outward
+        # rod 3
+        pivot_3_y_outward = (
+            base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3_outward*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+        )
+        rod_3_y_outward = y - pivot_3_y_outward
+        sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
+        pivot_3_z_outward = -inner_arm_3*sin_a3_outward  # rod 3
+        rod_3_z_outward = z - pivot_3_z_outward
+        type2_rods_coplanar_outward_outward_outward = (
+            assembly_sign
+            *(
+                rod_1_x_outward*rod_2_y_outward*rod_3_z_outward + rod_1_y_outward*rod_2_z_outward*rod_3_x_outward
+                + rod_1_z_outward*rod_2_x_outward*rod_3_y_outward - rod_1_x_outward*rod_2_z_outward*rod_3_y_outward
+                - rod_1_y_outward*rod_2_x_outward*rod_3_z_outward - rod_1_z_outward*rod_2_y_outward*rod_3_x_outward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_outward_outward_outward = select(
+            type2_rods_coplanar_outward_outward_outward >= min_type2_margin, 0.0, 3.0,
+        )
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        # A1: its turn
+        axis_a1_outward = nearest_period(offset_a1 + atan2(sin_a1_outward, cos_a1_outward)/DEGREE, near_a1)
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        # A2: its turn
+        axis_a2_outward = nearest_period(offset_a2 + atan2(sin_a2_outward, cos_a2_outward)/DEGREE, near_a2)
+        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(
+            absolute(turn_a3) > 0.0,
+            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+            open_a3,
+        )
+        # A3: its turn
+        axis_a3_outward = nearest_period(offset_a3 + atan2(sin_a3_outward, cos_a3_outward)/DEGREE, near_a3)
+        cos_a1_inward = along_a1*cos_swing_a1/divisor_a1 - z*sin_swing_a1_outward/divisor_a1
+        # rod 1
+        pivot_1_x_inward = (
+            base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1_inward*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
+        )
+        rod_1_x_inward = x - pivot_1_x_inward
+        # rod 1
+        pivot_1_y_inward = (
+            base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1_inward*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        )
+        rod_1_y_inward = y - pivot_1_y_inward
+        sin_a1_inward = -along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
+        pivot_1_z_inward = -inner_arm_1*sin_a1_inward  # rod 1
+        rod_1_z_inward = z - pivot_1_z_inward
+        type2_rods_coplanar_inward_outward_outward = (
+            assembly_sign
+            *(
+                rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_y_inward*rod_2_z_outward*rod_3_x_outward
+                + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
+                - rod_1_y_inward*rod_2_x_outward*rod_3_z_outward - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_inward_outward_outward = select(
+            type2_rods_coplanar_inward_outward_outward >= min_type2_margin, 0.0, 3.0,
+        )
+        # A1: its turn
+        axis_a1_inward = nearest_period(offset_a1 + atan2(sin_a1_inward, cos_a1_inward)/DEGREE, near_a1)
+        cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - z*sin_swing_a2_outward/divisor_a2
+        # rod 2
+        pivot_2_x_inward = (
+            base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2_inward*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        )
+        rod_2_x_inward = x - pivot_2_x_inward
+        # rod 2
+        pivot_2_y_inward = (
+            base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2_inward*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        )
+        rod_2_y_inward = y - pivot_2_y_inward
+        sin_a2_inward = -along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
+        pivot_2_z_inward = -inner_arm_2*sin_a2_inward  # rod 2
+        rod_2_z_inward = z - pivot_2_z_inward
+        type2_rods_coplanar_outward_inward_outward = (
+            assembly_sign
+            *(
+                rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_y_outward*rod_2_z_inward*rod_3_x_outward
+                + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
+                - rod_1_y_outward*rod_2_x_inward*rod_3_z_outward - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_outward_inward_outward = select(
+            type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0.0, 3.0,
+        )
+        # A2: its turn
+        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
+        type2_rods_coplanar_inward_inward_outward = (
+            assembly_sign
+            *(
+                rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_y_inward*rod_2_z_inward*rod_3_x_outward
+                + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
+                - rod_1_y_inward*rod_2_x_inward*rod_3_z_outward - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_inward_inward_outward = select(
+            type2_rods_coplanar_inward_inward_outward >= min_type2_margin, 0.0, 3.0,
+        )
+        cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - z*sin_swing_a3_outward/divisor_a3
+        # rod 3
+        pivot_3_x_inward = (
+            base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3_inward*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+        )
+        rod_3_x_inward = x - pivot_3_x_inward
+        # rod 3
+        pivot_3_y_inward = (
+            base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3_inward*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+        )
+        rod_3_y_inward = y - pivot_3_y_inward
+        sin_a3_inward = -along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
+        pivot_3_z_inward = -inner_arm_3*sin_a3_inward  # rod 3
+        rod_3_z_inward = z - pivot_3_z_inward
+        type2_rods_coplanar_outward_outward_inward = (
+            assembly_sign
+            *(
+                rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_y_outward*rod_2_z_outward*rod_3_x_inward
+                + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
+                - rod_1_y_outward*rod_2_x_outward*rod_3_z_inward - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_outward_outward_inward = select(
+            type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0.0, 3.0,
+        )
+        # A3: its turn
+        axis_a3_inward = nearest_period(offset_a3 + atan2(sin_a3_inward, cos_a3_inward)/DEGREE, near_a3)
+        type2_rods_coplanar_inward_outward_inward = (
+            assembly_sign
+            *(
+                rod_1_x_inward*rod_2_y_outward*rod_3_z_inward + rod_1_y_inward*rod_2_z_outward*rod_3_x_inward
+                + rod_1_z_inward*rod_2_x_outward*rod_3_y_inward - rod_1_x_inward*rod_2_z_outward*rod_3_y_inward
+                - rod_1_y_inward*rod_2_x_outward*rod_3_z_inward - rod_1_z_inward*rod_2_y_outward*rod_3_x_inward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_inward_outward_inward = select(
+            type2_rods_coplanar_inward_outward_inward >= min_type2_margin, 0.0, 3.0,
+        )
+        type2_rods_coplanar_outward_inward_inward = (
+            assembly_sign
+            *(
+                rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_y_outward*rod_2_z_inward*rod_3_x_inward
+                + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
+                - rod_1_y_outward*rod_2_x_inward*rod_3_z_inward - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_outward_inward_inward = select(
+            type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0.0, 3.0,
+        )
+        type2_rods_coplanar_inward_inward_inward = (
+            assembly_sign
+            *(
+                rod_1_x_inward*rod_2_y_inward*rod_3_z_inward + rod_1_y_inward*rod_2_z_inward*rod_3_x_inward
+                + rod_1_z_inward*rod_2_x_inward*rod_3_y_inward - rod_1_x_inward*rod_2_z_inward*rod_3_y_inward
+                - rod_1_y_inward*rod_2_x_inward*rod_3_z_inward - rod_1_z_inward*rod_2_y_inward*rod_3_x_inward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_inward_inward_inward = select(type2_rods_coplanar_inward_inward_inward >= min_type2_margin, 0.0, 3.0)
+        return (
+            ((axis_a1_outward, axis_a2_outward, axis_a3_outward), refused(status, refusal_outward_outward_outward)),
+            ((axis_a1_inward, axis_a2_outward, axis_a3_outward), refused(status, refusal_inward_outward_outward)),
+            ((axis_a1_outward, axis_a2_inward, axis_a3_outward), refused(status, refusal_outward_inward_outward)),
+            ((axis_a1_inward, axis_a2_inward, axis_a3_outward), refused(status, refusal_inward_inward_outward)),
+            ((axis_a1_outward, axis_a2_outward, axis_a3_inward), refused(status, refusal_outward_outward_inward)),
+            ((axis_a1_inward, axis_a2_outward, axis_a3_inward), refused(status, refusal_inward_outward_inward)),
+            ((axis_a1_outward, axis_a2_inward, axis_a3_inward), refused(status, refusal_outward_inward_inward)),
+            ((axis_a1_inward, axis_a2_inward, axis_a3_inward), refused(status, refusal_inward_inward_inward)),
+        )

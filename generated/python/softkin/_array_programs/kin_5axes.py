@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -15,8 +16,10 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    everywhere,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -130,21 +133,27 @@ class ArrayPrograms(Programs):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
+        r13_of_a = r13/tool_side
+        r23_of_a = r23/tool_side
+        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        if everywhere(radius_a > 1e-11):
+            along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
+            cos_a = along_a/radius_a  # its reference where it is free
+            across_a = r23_of_a*sigma_roll
+            sin_a = across_a/radius_a
+        else:
+            free_a = (ref_a - offset_a)*DEGREE
+            along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
+            length_a = select(radius_a > 1e-11, radius_a, 1.0)
+            cos_a = select(radius_a > 1e-11, along_a/length_a, cos(free_a))  # its reference where it is free
+            across_a = r23_of_a*sigma_roll
+            sin_a = select(radius_a > 1e-11, across_a/length_a, sin(free_a))
         wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length*tool_side
         axis_y = offset_y + wrist_y
         wrist_z = z - r33*tool_length*tool_side
         axis_z = offset_z + wrist_z
-        free_a = (ref_a - offset_a)*DEGREE
-        r13_of_a = r13/tool_side
-        r23_of_a = r23/tool_side
-        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
-        length_a = select(radius_a > 1e-11, radius_a, 1.0)
-        cos_a = select(radius_a > 1e-11, along_a/length_a, cos(free_a))  # its reference where it is free
-        across_a = r23_of_a*sigma_roll
-        sin_a = select(radius_a > 1e-11, across_a/length_a, sin(free_a))
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
         axis_a = nearest_period(offset_a + atan2(sin_a, cos_a)/DEGREE, near_a)  # A: its turn
@@ -180,3 +189,89 @@ class ArrayPrograms(Programs):
         # limits of B
         require(status, (axis_b >= lowest_b) & (axis_b <= highest_b), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        turn_a, turn_b = turns
+        _, _, _, ref_a, ref_b = reference
+        k = self.constants
+        mid_a = k.mid_a
+        mid_b = k.mid_b
+        offset_a = k.offset_a
+        offset_b = k.offset_b
+        offset_x = k.offset_x
+        offset_y = k.offset_y
+        offset_z = k.offset_z
+        single_a = k.single_a
+        single_b = k.single_b
+        tool_length = k.tool_length
+        tool_side = k.tool_side
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
+                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
+                & (absolute(r33) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
+        require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
+        # columns of length one, at right angles
+        require(
+            status,
+            (
+                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
+                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
+                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
+                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
+                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
+            ),
+            Status.BAD_INPUT,
+        )
+        # a right-handed frame
+        require(
+            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
+            Status.BAD_INPUT,
+        )
+        r13_of_a = r13/tool_side
+        r23_of_a = r23/tool_side
+        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        if everywhere(radius_a > 1e-11):
+            cos_a_positive = r13_of_a/radius_a  # its reference where it is free
+            sin_a_positive = r23_of_a/radius_a
+            cos_a_negative = -cos_a_positive  # its reference where it is free
+            sin_a_negative = -sin_a_positive
+        else:
+            free_a = (ref_a - offset_a)*DEGREE
+            length_a = select(radius_a > 1e-11, radius_a, 1.0)
+            cos_a_positive = select(radius_a > 1e-11, r13_of_a/length_a, cos(free_a))  # its reference where it is free
+            sin_a_positive = select(radius_a > 1e-11, r23_of_a/length_a, sin(free_a))
+            cos_a_negative = select(radius_a > 1e-11, -r13_of_a/length_a, cos(free_a))  # its reference where it is free
+            sin_a_negative = select(radius_a > 1e-11, -r23_of_a/length_a, sin(free_a))
+        wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
+        axis_x = offset_x + wrist_x
+        wrist_y = y - r23*tool_length*tool_side
+        axis_y = offset_y + wrist_y
+        wrist_z = z - r33*tool_length*tool_side
+        axis_z = offset_z + wrist_z
+        open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
+        near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
+        # A: its turn
+        axis_a_positive = nearest_period(offset_a + atan2(sin_a_positive, cos_a_positive)/DEGREE, near_a)
+        open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
+        near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
+        axis_b_positive = nearest_period(offset_b + atan2(radius_a, r33)/DEGREE, near_b)  # B: its turn
+        # A: its turn
+        axis_a_negative = nearest_period(offset_a + atan2(sin_a_negative, cos_a_negative)/DEGREE, near_a)
+        axis_b_negative = nearest_period(offset_b + atan2(-radius_a, r33)/DEGREE, near_b)  # B: its turn
+        return (
+            ((axis_x, axis_y, axis_z, axis_a_positive, axis_b_positive), refused(status, 0.0)),
+            ((axis_x, axis_y, axis_z, axis_a_negative, axis_b_negative), refused(status, 0.0)),
+        )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -15,8 +16,10 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    everywhere,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -360,3 +363,699 @@ class ArrayPrograms(Programs):
         # limits of A2
         require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        turn_a1, turn_a2 = turns
+        ref_a1, ref_a2 = reference
+        k = self.constants
+        assembly_sign = k.assembly_sign
+        link_length_1 = k.link_length_1
+        link_length_2 = k.link_length_2
+        link_length_3 = k.link_length_3
+        link_length_4 = k.link_length_4
+        link_length_5 = k.link_length_5
+        machine_scale = k.machine_scale
+        mid_a1 = k.mid_a1
+        mid_a2 = k.mid_a2
+        min_type2_margin = k.min_type2_margin
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        single_a1 = k.single_a1
+        single_a2 = k.single_a2
+        swap_xy = k.swap_xy
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
+        # z of a planar machine
+        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
+        span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
+        # effective length that the angle turns
+        effective_a1 = root(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        # the effective length is too short to be aimed
+        require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
+        divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
+        swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
+        # kept as a product
+        sine_square_a1 = (
+            (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_1 + link_length_2)
+            *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
+            /(swing_scale_a1*swing_scale_a1)
+        )
+        # out of reach
+        require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
+        cos_swing_a1 = (
+            (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
+        )
+        sin_swing_a1_left = -root(sine_square_a1)
+        sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1_left/divisor_a1
+        cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1_left/divisor_a1
+        # rod rear
+        span_rear_x = (
+            link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
+            - link_length_3*swap_xy*y/link_length_2
+        )
+        along_a2_left = (
+            (
+                link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1_left
+                - link_length_1*link_length_3*sin_a1_left
+            )
+            /link_length_2
+        )
+        # rod rear
+        span_rear_y = (
+            link_length_3*swap_xy*y/link_length_2 - link_length_3*y/link_length_2
+            - link_length_3*swap_xy*x/link_length_2
+        )
+        across_a2_left = (
+            (
+                link_length_1*link_length_2*cos_a1_left + link_length_1*link_length_3*cos_a1_left
+                - link_length_2*span_rear_y
+            )
+            /link_length_2
+        )
+        # effective length that the angle turns
+        effective_a2_left = root(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
+        divisor_a2_left = select(effective_a2_left > 1e-9*link_length_5, effective_a2_left, 1.0)
+        swing_scale_a2_left = 2.0*divisor_a2_left*link_length_5  # a2: law of cosines in the rod rear equation
+        cos_swing_a2_left = (
+            (
+                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1_left
+                + 2.0*link_length_1*span_rear_x*sin_a1_left
+                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1_left/link_length_2
+                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1_left/link_length_2 - link_length_1*link_length_1
+                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
+                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
+                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+            )
+            /swing_scale_a2_left
+        )
+        # kept as a product
+        sine_square_a2_left = (
+            (
+                2.0*divisor_a2_left*link_length_2*link_length_2*link_length_5
+                + link_length_1*link_length_1*link_length_2*link_length_2
+                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
+                + link_length_1*link_length_1*link_length_3*link_length_3
+                + link_length_2*link_length_2*link_length_5*link_length_5
+                + link_length_2*link_length_2*span_rear_x*span_rear_x
+                + link_length_2*link_length_2*span_rear_y*span_rear_y
+                - link_length_2*link_length_2*link_length_4*link_length_4
+                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_left
+                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_left
+                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_left
+                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_left
+            )
+            *(
+                2.0*divisor_a2_left*link_length_2*link_length_2*link_length_5
+                + link_length_2*link_length_2*link_length_4*link_length_4
+                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_left
+                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_left
+                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_left
+                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_left
+                - link_length_1*link_length_1*link_length_2*link_length_2
+                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
+                - link_length_1*link_length_1*link_length_3*link_length_3
+                - link_length_2*link_length_2*link_length_5*link_length_5
+                - link_length_2*link_length_2*span_rear_x*span_rear_x
+                - link_length_2*link_length_2*span_rear_y*span_rear_y
+            )
+            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2_left*swing_scale_a2_left)
+        )
+        sin_swing_a2_left_left = -root(sine_square_a2_left)
+        cos_a2_left_left = (
+            along_a2_left*cos_swing_a2_left/divisor_a2_left - across_a2_left*sin_swing_a2_left_left/divisor_a2_left
+        )
+        sin_a2_left_left = (
+            across_a2_left*cos_swing_a2_left/divisor_a2_left + along_a2_left*sin_swing_a2_left_left/divisor_a2_left
+        )
+        cos_a2_left_right = (
+            across_a2_left*sin_swing_a2_left_left/divisor_a2_left + along_a2_left*cos_swing_a2_left/divisor_a2_left
+        )
+        sin_a2_left_right = (
+            across_a2_left*cos_swing_a2_left/divisor_a2_left - along_a2_left*sin_swing_a2_left_left/divisor_a2_left
+        )
+        if everywhere((sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5)):
+            pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
+            pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
+            # rod rear
+            pivot_rear_x_left_left = (
+                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
+                - link_length_5*cos_a2_left_left
+            )
+            # rod rear
+            pivot_rear_y_left_left = (
+                link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
+                + link_length_1*link_length_3*cos_a1_left/link_length_2
+            )
+            centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
+            rod_1_x_left = x - centre_1_x_left
+            centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
+            rod_1_y_left = y - centre_1_y_left
+            centre_2_x_left_left = (
+                (
+                    link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
+                    - link_length_2*pivot_rear_y_left_left*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_x_left_left = x - centre_2_x_left_left
+            centre_2_y_left_left = (
+                (
+                    link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
+                    - link_length_2*pivot_rear_x_left_left*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_y_left_left = y - centre_2_y_left_left
+            type2_arms_aligned_left_left = (
+                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
+                /(
+                    root(
+                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
+                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
+                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
+                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
+                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
+                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
+                    )
+                    *root(
+                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
+                        + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
+                        + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
+                        - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
+                        - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
+                        - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
+                    )
+                    *link_length_2
+                )
+            )
+            # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0)
+            # rod rear
+            pivot_rear_x_left_right = (
+                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
+                - link_length_5*cos_a2_left_right
+            )
+            # rod rear
+            pivot_rear_y_left_right = (
+                link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
+                + link_length_1*link_length_3*cos_a1_left/link_length_2
+            )
+            centre_2_x_left_right = (
+                (
+                    link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
+                    - link_length_2*pivot_rear_y_left_right*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_x_left_right = x - centre_2_x_left_right
+            centre_2_y_left_right = (
+                (
+                    link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
+                    - link_length_2*pivot_rear_x_left_right*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_y_left_right = y - centre_2_y_left_right
+            type2_arms_aligned_left_right = (
+                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
+                /(
+                    root(
+                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
+                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
+                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
+                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
+                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
+                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
+                    )
+                    *root(
+                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
+                        + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
+                        + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
+                        - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
+                        - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
+                        - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
+                    )
+                    *link_length_2
+                )
+            )
+            # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0)
+        else:
+            pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
+            pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
+            # rod rear
+            pivot_rear_x_left_left = (
+                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
+                - link_length_5*cos_a2_left_left
+            )
+            # rod rear
+            pivot_rear_y_left_left = (
+                link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
+                + link_length_1*link_length_3*cos_a1_left/link_length_2
+            )
+            centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
+            rod_1_x_left = x - centre_1_x_left
+            centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
+            rod_1_y_left = y - centre_1_y_left
+            centre_2_x_left_left = (
+                (
+                    link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
+                    - link_length_2*pivot_rear_y_left_left*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_x_left_left = x - centre_2_x_left_left
+            centre_2_y_left_left = (
+                (
+                    link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
+                    - link_length_2*pivot_rear_x_left_left*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_y_left_left = y - centre_2_y_left_left
+            type2_arms_aligned_left_left = (
+                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
+                /(
+                    root(
+                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
+                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
+                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
+                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
+                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
+                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
+                    )
+                    *root(
+                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
+                        + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
+                        + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
+                        - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
+                        - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
+                        - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
+                    )
+                    *link_length_2
+                )
+            )
+            # the effective length is too short to be aimed, out of reach
+            refusal_left = select((sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5), 0.0, 3.0)
+            # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_left_left = select(
+                refusal_left > 0.0,
+                refusal_left,
+                select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0),
+            )
+            # rod rear
+            pivot_rear_x_left_right = (
+                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
+                - link_length_5*cos_a2_left_right
+            )
+            # rod rear
+            pivot_rear_y_left_right = (
+                link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
+                + link_length_1*link_length_3*cos_a1_left/link_length_2
+            )
+            centre_2_x_left_right = (
+                (
+                    link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
+                    - link_length_2*pivot_rear_y_left_right*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_x_left_right = x - centre_2_x_left_right
+            centre_2_y_left_right = (
+                (
+                    link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
+                    - link_length_2*pivot_rear_x_left_right*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_y_left_right = y - centre_2_y_left_right
+            type2_arms_aligned_left_right = (
+                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
+                /(
+                    root(
+                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
+                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
+                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
+                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
+                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
+                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
+                    )
+                    *root(
+                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
+                        + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
+                        + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
+                        - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
+                        - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
+                        - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
+                    )
+                    *link_length_2
+                )
+            )
+            # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_left_right = select(
+                refusal_left > 0.0,
+                refusal_left,
+                select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0),
+            )
+        sin_a1_right = span_upper_x*cos_swing_a1/divisor_a1 - span_upper_y*sin_swing_a1_left/divisor_a1
+        cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_left/divisor_a1
+        along_a2_right = (
+            (
+                link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1_right
+                - link_length_1*link_length_3*sin_a1_right
+            )
+            /link_length_2
+        )
+        across_a2_right = (
+            (
+                link_length_1*link_length_2*cos_a1_right + link_length_1*link_length_3*cos_a1_right
+                - link_length_2*span_rear_y
+            )
+            /link_length_2
+        )
+        # effective length that the angle turns
+        effective_a2_right = root(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
+        divisor_a2_right = select(effective_a2_right > 1e-9*link_length_5, effective_a2_right, 1.0)
+        swing_scale_a2_right = 2.0*divisor_a2_right*link_length_5  # a2: law of cosines in the rod rear equation
+        cos_swing_a2_right = (
+            (
+                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1_right
+                + 2.0*link_length_1*span_rear_x*sin_a1_right
+                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1_right/link_length_2
+                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1_right/link_length_2 - link_length_1*link_length_1
+                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
+                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
+                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+            )
+            /swing_scale_a2_right
+        )
+        # kept as a product
+        sine_square_a2_right = (
+            (
+                2.0*divisor_a2_right*link_length_2*link_length_2*link_length_5
+                + link_length_1*link_length_1*link_length_2*link_length_2
+                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
+                + link_length_1*link_length_1*link_length_3*link_length_3
+                + link_length_2*link_length_2*link_length_5*link_length_5
+                + link_length_2*link_length_2*span_rear_x*span_rear_x
+                + link_length_2*link_length_2*span_rear_y*span_rear_y
+                - link_length_2*link_length_2*link_length_4*link_length_4
+                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_right
+                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_right
+                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_right
+                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_right
+            )
+            *(
+                2.0*divisor_a2_right*link_length_2*link_length_2*link_length_5
+                + link_length_2*link_length_2*link_length_4*link_length_4
+                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_right
+                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_right
+                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_right
+                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_right
+                - link_length_1*link_length_1*link_length_2*link_length_2
+                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
+                - link_length_1*link_length_1*link_length_3*link_length_3
+                - link_length_2*link_length_2*link_length_5*link_length_5
+                - link_length_2*link_length_2*span_rear_x*span_rear_x
+                - link_length_2*link_length_2*span_rear_y*span_rear_y
+            )
+            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2_right*swing_scale_a2_right)
+        )
+        sin_swing_a2_right_left = -root(sine_square_a2_right)
+        cos_a2_right_left = (
+            along_a2_right*cos_swing_a2_right/divisor_a2_right
+            - across_a2_right*sin_swing_a2_right_left/divisor_a2_right
+        )
+        sin_a2_right_left = (
+            across_a2_right*cos_swing_a2_right/divisor_a2_right
+            + along_a2_right*sin_swing_a2_right_left/divisor_a2_right
+        )
+        cos_a2_right_right = (
+            across_a2_right*sin_swing_a2_right_left/divisor_a2_right
+            + along_a2_right*cos_swing_a2_right/divisor_a2_right
+        )
+        sin_a2_right_right = (
+            across_a2_right*cos_swing_a2_right/divisor_a2_right
+            - along_a2_right*sin_swing_a2_right_left/divisor_a2_right
+        )
+        if everywhere((sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5)):
+            pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+            pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+            # rod rear
+            pivot_rear_x_right_left = (
+                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
+                - link_length_5*cos_a2_right_left
+            )
+            # rod rear
+            pivot_rear_y_right_left = (
+                link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
+                + link_length_1*link_length_3*cos_a1_right/link_length_2
+            )
+            centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
+            rod_1_x_right = x - centre_1_x_right
+            centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
+            rod_1_y_right = y - centre_1_y_right
+            centre_2_x_right_left = (
+                (
+                    link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
+                    - link_length_2*pivot_rear_y_right_left*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_x_right_left = x - centre_2_x_right_left
+            centre_2_y_right_left = (
+                (
+                    link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
+                    - link_length_2*pivot_rear_x_right_left*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_y_right_left = y - centre_2_y_right_left
+            type2_arms_aligned_right_left = (
+                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
+                /(
+                    root(
+                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
+                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
+                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
+                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
+                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
+                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
+                    )
+                    *root(
+                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
+                        + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
+                        + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
+                        - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
+                        - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
+                        - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
+                    )
+                    *link_length_2
+                )
+            )
+            # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0)
+            # rod rear
+            pivot_rear_x_right_right = (
+                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
+                - link_length_5*cos_a2_right_right
+            )
+            # rod rear
+            pivot_rear_y_right_right = (
+                link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
+                + link_length_1*link_length_3*cos_a1_right/link_length_2
+            )
+            centre_2_x_right_right = (
+                (
+                    link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
+                    - link_length_2*pivot_rear_y_right_right*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_x_right_right = x - centre_2_x_right_right
+            centre_2_y_right_right = (
+                (
+                    link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
+                    - link_length_2*pivot_rear_x_right_right*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_y_right_right = y - centre_2_y_right_right
+            type2_arms_aligned_right_right = (
+                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
+                /(
+                    root(
+                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
+                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
+                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
+                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
+                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
+                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
+                    )
+                    *root(
+                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
+                        + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
+                        + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
+                        - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
+                        - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
+                        - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
+                    )
+                    *link_length_2
+                )
+            )
+            # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
+        else:
+            pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+            pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+            # rod rear
+            pivot_rear_x_right_left = (
+                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
+                - link_length_5*cos_a2_right_left
+            )
+            # rod rear
+            pivot_rear_y_right_left = (
+                link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
+                + link_length_1*link_length_3*cos_a1_right/link_length_2
+            )
+            centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
+            rod_1_x_right = x - centre_1_x_right
+            centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
+            rod_1_y_right = y - centre_1_y_right
+            centre_2_x_right_left = (
+                (
+                    link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
+                    - link_length_2*pivot_rear_y_right_left*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_x_right_left = x - centre_2_x_right_left
+            centre_2_y_right_left = (
+                (
+                    link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
+                    - link_length_2*pivot_rear_x_right_left*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_y_right_left = y - centre_2_y_right_left
+            type2_arms_aligned_right_left = (
+                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
+                /(
+                    root(
+                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
+                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
+                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
+                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
+                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
+                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
+                    )
+                    *root(
+                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
+                        + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
+                        + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
+                        - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
+                        - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
+                        - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
+                    )
+                    *link_length_2
+                )
+            )
+            # the effective length is too short to be aimed, out of reach
+            refusal_right = select((sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5), 0.0, 3.0)
+            # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_right_left = select(
+                refusal_right > 0.0,
+                refusal_right,
+                select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0),
+            )
+            # rod rear
+            pivot_rear_x_right_right = (
+                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
+                - link_length_5*cos_a2_right_right
+            )
+            # rod rear
+            pivot_rear_y_right_right = (
+                link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
+                + link_length_1*link_length_3*cos_a1_right/link_length_2
+            )
+            centre_2_x_right_right = (
+                (
+                    link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
+                    - link_length_2*pivot_rear_y_right_right*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_x_right_right = x - centre_2_x_right_right
+            centre_2_y_right_right = (
+                (
+                    link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
+                    - link_length_2*pivot_rear_x_right_right*swap_xy
+                )
+                /link_length_3
+            )
+            rod_2_y_right_right = y - centre_2_y_right_right
+            type2_arms_aligned_right_right = (
+                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
+                /(
+                    root(
+                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
+                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
+                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
+                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
+                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
+                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
+                    )
+                    *root(
+                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
+                        + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
+                        + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
+                        - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
+                        - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
+                        - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
+                    )
+                    *link_length_2
+                )
+            )
+            # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_right_right = select(
+                refusal_right > 0.0,
+                refusal_right,
+                select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0),
+            )
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        # A2: its turn
+        axis_a2_left_left = nearest_period(offset_a2 + atan2(sin_a2_left_left, cos_a2_left_left)/DEGREE, near_a2)
+        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        # A2: its turn
+        axis_a2_right_left = nearest_period(offset_a2 + atan2(sin_a2_right_left, cos_a2_right_left)/DEGREE, near_a2)
+        # A2: its turn
+        axis_a2_left_right = nearest_period(offset_a2 + atan2(sin_a2_left_right, cos_a2_left_right)/DEGREE, near_a2)
+        # A2: its turn
+        axis_a2_right_right = nearest_period(
+            offset_a2 + atan2(sin_a2_right_right, cos_a2_right_right)/DEGREE, near_a2,
+        )
+        return (
+            ((axis_a1_left, axis_a2_left_left), refused(status, refusal_left_left)),
+            ((axis_a1_right, axis_a2_right_left), refused(status, refusal_right_left)),
+            ((axis_a1_left, axis_a2_left_right), refused(status, refusal_left_right)),
+            ((axis_a1_right, axis_a2_right_right), refused(status, refusal_right_right)),
+        )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -17,6 +18,7 @@ from softkin._array import (
     cos,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -188,3 +190,131 @@ class ArrayPrograms(Programs):
         # limits of A2
         require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        turn_a1, turn_a2 = turns
+        ref_a1, ref_a2 = reference
+        k = self.constants
+        assembly_sign = k.assembly_sign
+        displacement = k.displacement
+        inner_arm = k.inner_arm
+        machine_scale = k.machine_scale
+        mid_a1 = k.mid_a1
+        mid_a2 = k.mid_a2
+        min_type2_margin = k.min_type2_margin
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        outer_arm = k.outer_arm
+        single_a1 = k.single_a1
+        single_a2 = k.single_a2
+        tcp_displacement = k.tcp_displacement
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
+        # z of a planar machine
+        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        span_1_x = displacement + x - tcp_displacement  # rod 1
+        effective_a1 = root(span_1_x*span_1_x + y*y)  # effective length that the angle turns
+        # the effective length is too short to be aimed
+        require(status, effective_a1 > 1e-9*inner_arm, Status.UNREACHABLE)
+        divisor_a1 = select(effective_a1 > 1e-9*inner_arm, effective_a1, 1.0)
+        swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
+        # kept as a product
+        sine_square_a1 = (
+            (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
+            *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
+        )
+        # out of reach
+        require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
+        span_2_x = tcp_displacement + x - displacement  # rod 2
+        effective_a2 = root(span_2_x*span_2_x + y*y)  # effective length that the angle turns
+        # the effective length is too short to be aimed
+        require(status, effective_a2 > 1e-9*inner_arm, Status.UNREACHABLE)
+        divisor_a2 = select(effective_a2 > 1e-9*inner_arm, effective_a2, 1.0)
+        swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
+        # kept as a product
+        sine_square_a2 = (
+            (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
+            *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
+        )
+        # out of reach
+        require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
+        cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
+        sin_swing_a1_outward = root(sine_square_a1)
+        cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1_outward/divisor_a1
+        pivot_1_x_outward = tcp_displacement - displacement - inner_arm*cos_a1_outward  # rod 1
+        rod_1_x_outward = x - pivot_1_x_outward
+        sin_a1_outward = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
+        pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
+        rod_1_y_outward = y - pivot_1_y_outward
+        cos_swing_a2 = (divisor_a2*divisor_a2 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a2
+        sin_swing_a2_outward = -root(sine_square_a2)
+        cos_a2_outward = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2_outward/divisor_a2
+        pivot_2_x_outward = displacement + inner_arm*cos_a2_outward - tcp_displacement  # rod 2
+        rod_2_x_outward = x - pivot_2_x_outward
+        sin_a2_outward = span_2_x*sin_swing_a2_outward/divisor_a2 - y*cos_swing_a2/divisor_a2
+        pivot_2_y_outward = -inner_arm*sin_a2_outward  # rod 2
+        rod_2_y_outward = y - pivot_2_y_outward
+        type2_arms_aligned_outward_outward = (
+            assembly_sign*(rod_1_x_outward*rod_2_y_outward - rod_1_y_outward*rod_2_x_outward)/(outer_arm*outer_arm)
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_outward_outward = select(type2_arms_aligned_outward_outward >= min_type2_margin, 0.0, 3.0)
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        # A1: its turn
+        axis_a1_outward = nearest_period(offset_a1 + atan2(sin_a1_outward, cos_a1_outward)/DEGREE, near_a1)
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        # A2: its turn
+        axis_a2_outward = nearest_period(offset_a2 + atan2(sin_a2_outward, cos_a2_outward)/DEGREE, near_a2)
+        cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + y*sin_swing_a1_outward/divisor_a1
+        pivot_1_x_inward = tcp_displacement - displacement - inner_arm*cos_a1_inward  # rod 1
+        rod_1_x_inward = x - pivot_1_x_inward
+        sin_a1_inward = y*cos_swing_a1/divisor_a1 - span_1_x*sin_swing_a1_outward/divisor_a1
+        pivot_1_y_inward = -inner_arm*sin_a1_inward  # rod 1
+        rod_1_y_inward = y - pivot_1_y_inward
+        type2_arms_aligned_inward_outward = (
+            assembly_sign*(rod_1_x_inward*rod_2_y_outward - rod_1_y_inward*rod_2_x_outward)/(outer_arm*outer_arm)
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_inward_outward = select(type2_arms_aligned_inward_outward >= min_type2_margin, 0.0, 3.0)
+        # A1: its turn
+        axis_a1_inward = nearest_period(offset_a1 + atan2(sin_a1_inward, cos_a1_inward)/DEGREE, near_a1)
+        cos_a2_inward = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2_outward/divisor_a2
+        pivot_2_x_inward = displacement + inner_arm*cos_a2_inward - tcp_displacement  # rod 2
+        rod_2_x_inward = x - pivot_2_x_inward
+        sin_a2_inward = -y*cos_swing_a2/divisor_a2 - span_2_x*sin_swing_a2_outward/divisor_a2
+        pivot_2_y_inward = -inner_arm*sin_a2_inward  # rod 2
+        rod_2_y_inward = y - pivot_2_y_inward
+        type2_arms_aligned_outward_inward = (
+            assembly_sign*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)/(outer_arm*outer_arm)
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_outward_inward = select(type2_arms_aligned_outward_inward >= min_type2_margin, 0.0, 3.0)
+        # A2: its turn
+        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
+        type2_arms_aligned_inward_inward = (
+            assembly_sign*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)/(outer_arm*outer_arm)
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_inward_inward = select(type2_arms_aligned_inward_inward >= min_type2_margin, 0.0, 3.0)
+        return (
+            ((axis_a1_outward, axis_a2_outward), refused(status, refusal_outward_outward)),
+            ((axis_a1_inward, axis_a2_outward), refused(status, refusal_inward_outward)),
+            ((axis_a1_outward, axis_a2_inward), refused(status, refusal_outward_inward)),
+            ((axis_a1_inward, axis_a2_inward), refused(status, refusal_inward_inward)),
+        )

@@ -3,9 +3,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from softkin._array import Codes, Programs, Reals, Rotation, Vector, absolute, passed, require, root, select
+from softkin._array import (
+    Codes,
+    Programs,
+    Reals,
+    Rotation,
+    Vector,
+    absolute,
+    passed,
+    refused,
+    require,
+    root,
+    select,
+)
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -133,3 +146,78 @@ class ArrayPrograms(Programs):
         # limits of A2
         require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        k = self.constants
+        arm_length_1 = k.arm_length_1
+        arm_length_2 = k.arm_length_2
+        assembly_sign = k.assembly_sign
+        machine_scale = k.machine_scale
+        min_type2_margin = k.min_type2_margin
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        rail_y_1 = k.rail_y_1
+        rail_y_2 = k.rail_y_2
+        tcp_offset_1 = k.tcp_offset_1
+        tcp_offset_2 = k.tcp_offset_2
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        # z of a planar machine
+        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        span_1_y = y - rail_y_1  # rod 1
+        root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
+        # rod 1 cannot reach
+        require(status, root_square_a1 >= -1e-12*arm_length_1*arm_length_1, Status.UNREACHABLE)
+        span_2_y = y - rail_y_2  # rod 2
+        root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
+        # rod 2 cannot reach
+        require(status, root_square_a2 >= -1e-12*arm_length_2*arm_length_2, Status.UNREACHABLE)
+        span_1_x = x - tcp_offset_1  # rod 1
+        a1_left = span_1_x - root(root_square_a1)
+        pivot_1_x_left = a1_left + tcp_offset_1  # rod 1
+        rod_1_x_left = x - pivot_1_x_left
+        span_2_x = tcp_offset_2 + x  # rod 2
+        a2_right = span_2_x + root(root_square_a2)
+        pivot_2_x_right = a2_right - tcp_offset_2  # rod 2
+        rod_2_x_right = x - pivot_2_x_right
+        type2_arms_aligned_left_right = (
+            assembly_sign*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)/(arm_length_1*arm_length_2)
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0)
+        axis_a1_left = a1_left + offset_a1
+        axis_a2_right = a2_right + offset_a2
+        a1_right = span_1_x + root(root_square_a1)
+        pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
+        rod_1_x_right = x - pivot_1_x_right
+        type2_arms_aligned_right_right = (
+            assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)/(arm_length_1*arm_length_2)
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
+        axis_a1_right = a1_right + offset_a1
+        a2_left = span_2_x - root(root_square_a2)
+        pivot_2_x_left = a2_left - tcp_offset_2  # rod 2
+        rod_2_x_left = x - pivot_2_x_left
+        type2_arms_aligned_left_left = (
+            assembly_sign*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)/(arm_length_1*arm_length_2)
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0)
+        axis_a2_left = a2_left + offset_a2
+        type2_arms_aligned_right_left = (
+            assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_left*span_1_y)/(arm_length_1*arm_length_2)
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0)
+        return (
+            ((axis_a1_left, axis_a2_right), refused(status, refusal_left_right)),
+            ((axis_a1_right, axis_a2_right), refused(status, refusal_right_right)),
+            ((axis_a1_left, axis_a2_left), refused(status, refusal_left_left)),
+            ((axis_a1_right, axis_a2_left), refused(status, refusal_right_left)),
+        )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -15,8 +16,10 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    everywhere,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -137,12 +140,18 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1 = root(sine_square_q1)*sigma_arm
-        # its reference where it is free
-        cos_q1 = select(distance_q1 > 1e-11*machine_scale, (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1, cos(free_a1))
-        sin_q1 = select(distance_q1 > 1e-11*machine_scale, (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1, sin(free_a1))
+        if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1 = root(sine_square_q1)*sigma_arm
+            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1 = root(sine_square_q1)*sigma_arm
+            # its reference where it is free
+            cos_q1 = select(distance_q1 > 1e-11*machine_scale, (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1, cos(free_a1))
+            sin_q1 = select(distance_q1 > 1e-11*machine_scale, (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1, sin(free_a1))
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -153,6 +162,38 @@ class ArrayPrograms(Programs):
         )
         # out of reach
         require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
+        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
+        cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
+        sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_q2 = d4*cos_q3 - a3*sin_q3
+            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+            length_q2 = select(
+                across_q2*across_q2 + along_q2*along_q2 > 0.0,
+                root(across_q2*across_q2 + along_q2*along_q2),
+                1.0,
+            )
+            cos_q2 = along_q2/length_q2  # its reference where it is free
+            sin_q2 = across_q2/length_q2
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2 = d4*cos_q3 - a3*sin_q3
+            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+            length_q2 = select(
+                (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
+                root(across_q2*across_q2 + along_q2*along_q2),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
+            sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -160,24 +201,6 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
-        sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
-        cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
-        sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
-        arm_along_q2 = d4*cos_q3 - a3*sin_q3
-        arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations
-        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        length_q2 = select(
-            (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
-            root(across_q2*across_q2 + along_q2*along_q2),
-            1.0,
-        )
-        # its reference where it is free
-        cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
-        sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -212,3 +235,294 @@ class ArrayPrograms(Programs):
         # limits of A3
         require(status, (axis_a3 >= lowest_a3) & (axis_a3 <= highest_a3), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        turn_a1, turn_a2, turn_a3 = turns
+        ref_a1, ref_a2, ref_a3 = reference
+        k = self.constants
+        a1 = k.a1
+        a2 = k.a2
+        a3 = k.a3
+        d1 = k.d1
+        d3 = k.d3
+        d4 = k.d4
+        effective_q3_2 = k.effective_q3_2
+        machine_scale = k.machine_scale
+        mid_a1 = k.mid_a1
+        mid_a2 = k.mid_a2
+        mid_a3 = k.mid_a3
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        single_a1 = k.single_a1
+        single_a2 = k.single_a2
+        single_a3 = k.single_a3
+        swing_scale_q3_2 = k.swing_scale_q3_2
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
+            Status.BAD_INPUT,
+        )
+        distance_q1 = root(x*x + y*y)  # q1: of the point from its axis
+        # q1: aimed by the z_from_q1 equation
+        divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
+        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
+        # out of reach
+        require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
+        free_a1 = (ref_a1 - offset_a1)*DEGREE
+        cos_swing_q1 = -d3/divisor_q1
+        sin_swing_q1_front = root(sine_square_q1)
+        if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+            sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
+        else:
+            # its reference where it is free
+            cos_q1_front = select(
+                distance_q1 > 1e-11*machine_scale,
+                (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1_front = select(
+                distance_q1 > 1e-11*machine_scale,
+                (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1,
+                sin(free_a1),
+            )
+        wrist_x_from_q1_front = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d1  # what the unknown links must span
+        reach_front = root(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
+        # kept as a product
+        sine_square_q3_front = (
+            (effective_q3_2 + reach_front - a2)*(a2 + effective_q3_2 + reach_front)
+            *(a2 + effective_q3_2 - reach_front)*(a2 + reach_front - effective_q3_2)
+            /(swing_scale_q3_2*swing_scale_q3_2)
+        )
+        free_a2 = (ref_a2 - offset_a2)*DEGREE
+        cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        sin_swing_q3_front_down = -root(sine_square_q3_front)
+        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3_2 - d4*sin_swing_q3_front_down/effective_q3_2
+        sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3_2 + d4*cos_swing_q3_front/effective_q3_2
+        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3_2 + d4*sin_swing_q3_front_down/effective_q3_2
+        sin_q3_front_up = d4*cos_swing_q3_front/effective_q3_2 - a3*sin_swing_q3_front_down/effective_q3_2
+        if everywhere(reach_front > 1e-11*machine_scale):
+            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
+            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+            across_q2_front_down = (
+                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
+            )
+            length_q2_front_down = select(
+                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0,
+                root(across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down),
+                1.0,
+            )
+            cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
+            sin_q2_front_down = across_q2_front_down/length_q2_front_down
+            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
+            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
+            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
+            length_q2_front_up = select(
+                across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0,
+                root(across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up),
+                1.0,
+            )
+            cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
+            sin_q2_front_up = across_q2_front_up/length_q2_front_up
+        else:
+            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
+            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+            across_q2_front_down = (
+                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
+            )
+            length_q2_front_down = select(
+                (
+                    (reach_front > 1e-11*machine_scale)
+                    & (across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0)
+                ),
+                root(across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_front_down = select(
+                reach_front > 1e-11*machine_scale,
+                along_q2_front_down/length_q2_front_down,
+                cos(free_a2),
+            )
+            sin_q2_front_down = select(
+                reach_front > 1e-11*machine_scale,
+                across_q2_front_down/length_q2_front_down,
+                sin(free_a2),
+            )
+            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
+            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
+            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
+            length_q2_front_up = select(
+                (
+                    (reach_front > 1e-11*machine_scale)
+                    & (across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0)
+                ),
+                root(across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_front_up = select(
+                reach_front > 1e-11*machine_scale,
+                along_q2_front_up/length_q2_front_up,
+                cos(free_a2),
+            )
+            sin_q2_front_up = select(
+                reach_front > 1e-11*machine_scale,
+                across_q2_front_up/length_q2_front_up,
+                sin(free_a2),
+            )
+        if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
+        else:
+            # its reference where it is free
+            cos_q1_back = select(
+                distance_q1 > 1e-11*machine_scale,
+                (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1_back = select(
+                distance_q1 > 1e-11*machine_scale,
+                (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1,
+                sin(free_a1),
+            )
+        wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
+        reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
+        # kept as a product
+        sine_square_q3_back = (
+            (effective_q3_2 + reach_back - a2)*(a2 + effective_q3_2 + reach_back)*(a2 + effective_q3_2 - reach_back)
+            *(a2 + reach_back - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
+        )
+        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        sin_swing_q3_back_down = -root(sine_square_q3_back)
+        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3_2 - d4*sin_swing_q3_back_down/effective_q3_2
+        sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3_2 + d4*cos_swing_q3_back/effective_q3_2
+        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3_2 + d4*sin_swing_q3_back_down/effective_q3_2
+        sin_q3_back_up = d4*cos_swing_q3_back/effective_q3_2 - a3*sin_swing_q3_back_down/effective_q3_2
+        if everywhere(reach_back > 1e-11*machine_scale):
+            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
+            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
+            length_q2_back_down = select(
+                across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0,
+                root(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down),
+                1.0,
+            )
+            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
+            sin_q2_back_down = across_q2_back_down/length_q2_back_down
+            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
+            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
+            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
+            length_q2_back_up = select(
+                across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0,
+                root(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up),
+                1.0,
+            )
+            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
+            sin_q2_back_up = across_q2_back_up/length_q2_back_up
+        else:
+            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
+            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
+            length_q2_back_down = select(
+                (
+                    (reach_back > 1e-11*machine_scale)
+                    & (across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0)
+                ),
+                root(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_back_down = select(
+                reach_back > 1e-11*machine_scale,
+                along_q2_back_down/length_q2_back_down,
+                cos(free_a2),
+            )
+            sin_q2_back_down = select(
+                reach_back > 1e-11*machine_scale,
+                across_q2_back_down/length_q2_back_down,
+                sin(free_a2),
+            )
+            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
+            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
+            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
+            length_q2_back_up = select(
+                (
+                    (reach_back > 1e-11*machine_scale)
+                    & (across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0)
+                ),
+                root(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_back_up = select(reach_back > 1e-11*machine_scale, along_q2_back_up/length_q2_back_up, cos(free_a2))
+            sin_q2_back_up = select(reach_back > 1e-11*machine_scale, across_q2_back_up/length_q2_back_up, sin(free_a2))
+        refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # out of reach
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        axis_a1_front = nearest_period(offset_a1 + atan2(sin_q1_front, cos_q1_front)/DEGREE, near_a1)  # A1: its turn
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        # A2: its turn
+        axis_a2_front_down = nearest_period(offset_a2 + atan2(sin_q2_front_down, cos_q2_front_down)/DEGREE, near_a2)
+        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(
+            absolute(turn_a3) > 0.0,
+            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+            open_a3,
+        )
+        # A3: its turn
+        axis_a3_front_down = nearest_period(offset_a3 + atan2(sin_q3_front_down, cos_q3_front_down)/DEGREE, near_a3)
+        refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # out of reach
+        axis_a1_back = nearest_period(offset_a1 + atan2(sin_q1_back, cos_q1_back)/DEGREE, near_a1)  # A1: its turn
+        # A2: its turn
+        axis_a2_back_down = nearest_period(offset_a2 + atan2(sin_q2_back_down, cos_q2_back_down)/DEGREE, near_a2)
+        # A3: its turn
+        axis_a3_back_down = nearest_period(offset_a3 + atan2(sin_q3_back_down, cos_q3_back_down)/DEGREE, near_a3)
+        # A2: its turn
+        axis_a2_front_up = nearest_period(offset_a2 + atan2(sin_q2_front_up, cos_q2_front_up)/DEGREE, near_a2)
+        # A3: its turn
+        axis_a3_front_up = nearest_period(offset_a3 + atan2(sin_q3_front_up, cos_q3_front_up)/DEGREE, near_a3)
+        # A2: its turn
+        axis_a2_back_up = nearest_period(offset_a2 + atan2(sin_q2_back_up, cos_q2_back_up)/DEGREE, near_a2)
+        # A3: its turn
+        axis_a3_back_up = nearest_period(offset_a3 + atan2(sin_q3_back_up, cos_q3_back_up)/DEGREE, near_a3)
+        return (
+            ((axis_a1_front, axis_a2_front_down, axis_a3_front_down), refused(status, refusal_front)),
+            ((axis_a1_back, axis_a2_back_down, axis_a3_back_down), refused(status, refusal_back)),
+            ((axis_a1_front, axis_a2_front_up, axis_a3_front_up), refused(status, refusal_front)),
+            ((axis_a1_back, axis_a2_back_up, axis_a3_back_up), refused(status, refusal_back)),
+        )

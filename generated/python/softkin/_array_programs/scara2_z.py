@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -15,8 +16,10 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    everywhere,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -98,21 +101,34 @@ class ArrayPrograms(Programs):
         )
         # out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
-        arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
         sin_a2 = root(sine_square_a2)*sigma_elbow
-        arm_across_a1 = arm_length_2*sin_a2
-        along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-        across_a1 = arm_along_a1*y - arm_across_a1*x
-        length_a1 = select(
-            (reach > 1e-11*machine_scale) & (across_a1*across_a1 + along_a1*along_a1 > 0.0),
-            root(across_a1*across_a1 + along_a1*along_a1),
-            1.0,
-        )
-        # its reference where it is free
-        cos_a1 = select(reach > 1e-11*machine_scale, along_a1/length_a1, cos(free_a1))
-        sin_a1 = select(reach > 1e-11*machine_scale, across_a1/length_a1, sin(free_a1))
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
+            arm_across_a1 = arm_length_2*sin_a2
+            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*y - arm_across_a1*x
+            length_a1 = select(
+                across_a1*across_a1 + along_a1*along_a1 > 0.0,
+                root(across_a1*across_a1 + along_a1*along_a1),
+                1.0,
+            )
+            cos_a1 = along_a1/length_a1  # its reference where it is free
+            sin_a1 = across_a1/length_a1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
+            arm_across_a1 = arm_length_2*sin_a2
+            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*y - arm_across_a1*x
+            length_a1 = select(
+                (reach > 1e-11*machine_scale) & (across_a1*across_a1 + along_a1*along_a1 > 0.0),
+                root(across_a1*across_a1 + along_a1*along_a1),
+                1.0,
+            )
+            # its reference where it is free
+            cos_a1 = select(reach > 1e-11*machine_scale, along_a1/length_a1, cos(free_a1))
+            sin_a1 = select(reach > 1e-11*machine_scale, across_a1/length_a1, sin(free_a1))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -148,3 +164,103 @@ class ArrayPrograms(Programs):
         # limits of Z
         require(status, (axis_z >= lowest_z) & (axis_z <= highest_z), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        turn_a1, turn_a2 = turns
+        ref_a1, ref_a2, _ = reference
+        k = self.constants
+        arm_length_1 = k.arm_length_1
+        arm_length_2 = k.arm_length_2
+        machine_scale = k.machine_scale
+        mid_a1 = k.mid_a1
+        mid_a2 = k.mid_a2
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_z = k.offset_z
+        scale_a2 = k.scale_a2
+        single_a1 = k.single_a1
+        single_a2 = k.single_a2
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
+        reach = root(x*x + y*y)
+        # kept as a product
+        sine_square_a2 = (
+            (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
+            *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
+        )
+        # out of reach
+        require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
+        cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
+        sin_a2_right = root(sine_square_a2)
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
+            arm_across_a1_right = arm_length_2*sin_a2_right
+            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
+            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
+            length_a1_right = select(
+                across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0,
+                root(across_a1_right*across_a1_right + along_a1_right*along_a1_right),
+                1.0,
+            )
+            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
+            sin_a1_right = across_a1_right/length_a1_right
+            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
+            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
+            length_a1_left = select(
+                across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0,
+                root(across_a1_left*across_a1_left + along_a1_left*along_a1_left),
+                1.0,
+            )
+            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
+            sin_a1_left = across_a1_left/length_a1_left
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
+            arm_across_a1_right = arm_length_2*sin_a2_right
+            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
+            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
+            length_a1_right = select(
+                ((reach > 1e-11*machine_scale) & (across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0)),
+                root(across_a1_right*across_a1_right + along_a1_right*along_a1_right),
+                1.0,
+            )
+            # its reference where it is free
+            cos_a1_right = select(reach > 1e-11*machine_scale, along_a1_right/length_a1_right, cos(free_a1))
+            sin_a1_right = select(reach > 1e-11*machine_scale, across_a1_right/length_a1_right, sin(free_a1))
+            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
+            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
+            length_a1_left = select(
+                ((reach > 1e-11*machine_scale) & (across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0)),
+                root(across_a1_left*across_a1_left + along_a1_left*along_a1_left),
+                1.0,
+            )
+            # its reference where it is free
+            cos_a1_left = select(reach > 1e-11*machine_scale, along_a1_left/length_a1_left, cos(free_a1))
+            sin_a1_left = select(reach > 1e-11*machine_scale, across_a1_left/length_a1_left, sin(free_a1))
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        axis_a2_right = nearest_period(offset_a2 + atan2(sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_z = offset_z + z
+        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
+        axis_a2_left = nearest_period(offset_a2 + atan2(-sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        return (
+            ((axis_a1_right, axis_a2_right, axis_z), refused(status, 0.0)),
+            ((axis_a1_left, axis_a2_left, axis_z), refused(status, 0.0)),
+        )

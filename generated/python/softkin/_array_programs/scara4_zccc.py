@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -15,8 +16,10 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    everywhere,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -151,22 +154,35 @@ class ArrayPrograms(Programs):
         )
         # out of reach
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
-        axis_a1 = offset_a1 + z
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
-        arm_along_a2 = link_length_1 + link_length_2*cos_a3
         sin_a3 = root(sine_square_a3)*sigma_elbow
-        arm_across_a2 = link_length_2*sin_a3
-        along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
-        across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-        length_a2 = select(
-            (reach > 1e-11*machine_scale) & (across_a2*across_a2 + along_a2*along_a2 > 0.0),
-            root(across_a2*across_a2 + along_a2*along_a2),
-            1.0,
-        )
-        # its reference where it is free
-        cos_a2 = select(reach > 1e-11*machine_scale, along_a2/length_a2, cos(free_a2))
-        sin_a2 = select(reach > 1e-11*machine_scale, across_a2/length_a2, sin(free_a2))
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_a2 = link_length_1 + link_length_2*cos_a3
+            arm_across_a2 = link_length_2*sin_a3
+            along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
+            across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
+            length_a2 = select(
+                across_a2*across_a2 + along_a2*along_a2 > 0.0,
+                root(across_a2*across_a2 + along_a2*along_a2),
+                1.0,
+            )
+            cos_a2 = along_a2/length_a2  # its reference where it is free
+            sin_a2 = across_a2/length_a2
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_a2 = link_length_1 + link_length_2*cos_a3
+            arm_across_a2 = link_length_2*sin_a3
+            along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
+            across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
+            length_a2 = select(
+                (reach > 1e-11*machine_scale) & (across_a2*across_a2 + along_a2*along_a2 > 0.0),
+                root(across_a2*across_a2 + along_a2*along_a2),
+                1.0,
+            )
+            # its reference where it is free
+            cos_a2 = select(reach > 1e-11*machine_scale, along_a2/length_a2, cos(free_a2))
+            sin_a2 = select(reach > 1e-11*machine_scale, across_a2/length_a2, sin(free_a2))
+        axis_a1 = offset_a1 + z
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -216,3 +232,166 @@ class ArrayPrograms(Programs):
         # limits of A4
         require(status, (axis_a4 >= lowest_a4) & (axis_a4 <= highest_a4), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        turn_a2, turn_a3, turn_a4 = turns
+        _, ref_a2, ref_a3, ref_a4 = reference
+        k = self.constants
+        link_length_1 = k.link_length_1
+        link_length_2 = k.link_length_2
+        link_length_3 = k.link_length_3
+        machine_scale = k.machine_scale
+        mid_a2 = k.mid_a2
+        mid_a3 = k.mid_a3
+        mid_a4 = k.mid_a4
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        offset_a4 = k.offset_a4
+        scale_a3 = k.scale_a3
+        single_a2 = k.single_a2
+        single_a3 = k.single_a3
+        single_a4 = k.single_a4
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
+                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
+                & (absolute(r33) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
+        require(
+            status,
+            (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9) & (absolute(ref_a4) <= 1e9),
+            Status.BAD_INPUT,
+        )
+        # columns of length one, at right angles
+        require(
+            status,
+            (
+                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
+                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
+                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
+                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
+                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
+            ),
+            Status.BAD_INPUT,
+        )
+        # a right-handed frame
+        require(
+            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
+            Status.BAD_INPUT,
+        )
+        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        heading_across = r21 - r12
+        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        # the tool points exactly the opposite way
+        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        cos_heading = heading_along/heading_divisor
+        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        sin_heading = heading_across/heading_divisor
+        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
+        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        # kept as a product
+        sine_square_a3 = (
+            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
+            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
+        )
+        # out of reach
+        require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
+        cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
+        sin_a3_right = root(sine_square_a3)
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_a2 = link_length_1 + link_length_2*cos_a3
+            arm_across_a2_right = link_length_2*sin_a3_right
+            # a2: linear pair in the x and y equations
+            along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
+            across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
+            length_a2_right = select(
+                across_a2_right*across_a2_right + along_a2_right*along_a2_right > 0.0,
+                root(across_a2_right*across_a2_right + along_a2_right*along_a2_right),
+                1.0,
+            )
+            cos_a2_right = along_a2_right/length_a2_right  # its reference where it is free
+            sin_a2_right = across_a2_right/length_a2_right
+            along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
+            across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
+            length_a2_left = select(
+                across_a2_left*across_a2_left + along_a2_left*along_a2_left > 0.0,
+                root(across_a2_left*across_a2_left + along_a2_left*along_a2_left),
+                1.0,
+            )
+            cos_a2_left = along_a2_left/length_a2_left  # its reference where it is free
+            sin_a2_left = across_a2_left/length_a2_left
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_a2 = link_length_1 + link_length_2*cos_a3
+            arm_across_a2_right = link_length_2*sin_a3_right
+            # a2: linear pair in the x and y equations
+            along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
+            across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
+            length_a2_right = select(
+                ((reach > 1e-11*machine_scale) & (across_a2_right*across_a2_right + along_a2_right*along_a2_right > 0.0)),
+                root(across_a2_right*across_a2_right + along_a2_right*along_a2_right),
+                1.0,
+            )
+            # its reference where it is free
+            cos_a2_right = select(reach > 1e-11*machine_scale, along_a2_right/length_a2_right, cos(free_a2))
+            sin_a2_right = select(reach > 1e-11*machine_scale, across_a2_right/length_a2_right, sin(free_a2))
+            along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
+            across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
+            length_a2_left = select(
+                ((reach > 1e-11*machine_scale) & (across_a2_left*across_a2_left + along_a2_left*along_a2_left > 0.0)),
+                root(across_a2_left*across_a2_left + along_a2_left*along_a2_left),
+                1.0,
+            )
+            # its reference where it is free
+            cos_a2_left = select(reach > 1e-11*machine_scale, along_a2_left/length_a2_left, cos(free_a2))
+            sin_a2_left = select(reach > 1e-11*machine_scale, across_a2_left/length_a2_left, sin(free_a2))
+        axis_a1 = offset_a1 + z
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        axis_a2_right = nearest_period(offset_a2 + atan2(sin_a2_right, cos_a2_right)/DEGREE, near_a2)  # A2: its turn
+        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(
+            absolute(turn_a3) > 0.0,
+            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+            open_a3,
+        )
+        axis_a3_right = nearest_period(offset_a3 + atan2(sin_a3_right, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        cos_a23_right = cos_a2_right*cos_a3 - sin_a2_right*sin_a3_right
+        sin_a23_right = cos_a2_right*sin_a3_right + cos_a3*sin_a2_right
+        cos_a4_right = cos_a23_right*cos_heading + sin_a23_right*sin_heading  # a4: what the sum a234 leaves
+        sin_a4_right = cos_a23_right*sin_heading - cos_heading*sin_a23_right
+        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(
+            absolute(turn_a4) > 0.0,
+            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
+            open_a4,
+        )
+        axis_a4_right = nearest_period(offset_a4 + atan2(sin_a4_right, cos_a4_right)/DEGREE, near_a4)  # A4: its turn
+        axis_a2_left = nearest_period(offset_a2 + atan2(sin_a2_left, cos_a2_left)/DEGREE, near_a2)  # A2: its turn
+        axis_a3_left = nearest_period(offset_a3 + atan2(-sin_a3_right, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        cos_a23_left = cos_a2_left*cos_a3 + sin_a2_left*sin_a3_right
+        sin_a23_left = cos_a3*sin_a2_left - cos_a2_left*sin_a3_right
+        cos_a4_left = cos_a23_left*cos_heading + sin_a23_left*sin_heading  # a4: what the sum a234 leaves
+        sin_a4_left = cos_a23_left*sin_heading - cos_heading*sin_a23_left
+        axis_a4_left = nearest_period(offset_a4 + atan2(sin_a4_left, cos_a4_left)/DEGREE, near_a4)  # A4: its turn
+        return (
+            ((axis_a1, axis_a2_right, axis_a3_right, axis_a4_right), refused(status, 0.0)),
+            ((axis_a1, axis_a2_left, axis_a3_left, axis_a4_left), refused(status, 0.0)),
+        )

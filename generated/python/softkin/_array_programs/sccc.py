@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -15,8 +16,10 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    everywhere,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -157,19 +160,32 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
-        arm_along_a1 = link_length_1 + link_length_2*cos_a2
         sin_a2 = root(sine_square_a2)*sigma_elbow
-        arm_across_a1 = link_length_2*sin_a2
-        along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
-        across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-        length_a1 = select(
-            (reach > 1e-11*machine_scale) & (across_a1*across_a1 + along_a1*along_a1 > 0.0),
-            root(across_a1*across_a1 + along_a1*along_a1),
-            1.0,
-        )
-        # its reference where it is free
-        cos_a1 = select(reach > 1e-11*machine_scale, along_a1/length_a1, cos(free_a1))
-        sin_a1 = select(reach > 1e-11*machine_scale, across_a1/length_a1, sin(free_a1))
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_a1 = link_length_1 + link_length_2*cos_a2
+            arm_across_a1 = link_length_2*sin_a2
+            along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
+            length_a1 = select(
+                across_a1*across_a1 + along_a1*along_a1 > 0.0,
+                root(across_a1*across_a1 + along_a1*along_a1),
+                1.0,
+            )
+            cos_a1 = along_a1/length_a1  # its reference where it is free
+            sin_a1 = across_a1/length_a1
+        else:
+            arm_along_a1 = link_length_1 + link_length_2*cos_a2
+            arm_across_a1 = link_length_2*sin_a2
+            along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
+            across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
+            length_a1 = select(
+                (reach > 1e-11*machine_scale) & (across_a1*across_a1 + along_a1*along_a1 > 0.0),
+                root(across_a1*across_a1 + along_a1*along_a1),
+                1.0,
+            )
+            # its reference where it is free
+            cos_a1 = select(reach > 1e-11*machine_scale, along_a1/length_a1, cos(free_a1))
+            sin_a1 = select(reach > 1e-11*machine_scale, across_a1/length_a1, sin(free_a1))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -179,33 +195,39 @@ class ArrayPrograms(Programs):
         axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
         ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-        free_a2 = ref_motor_a2 + coupling_12*free_a1
-        # A2: where its turn is open
-        open_a2 = select(single_a2 > 0.0, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE)
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
+        if everywhere(absolute(turn_a2) > 0.0):
+            near_a2 = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
+        else:
+            free_a2 = ref_motor_a2 + coupling_12*free_a1
+            # A2: where its turn is open
+            open_a2 = select(single_a2 > 0.0, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE)
+            near_a2 = select(
+                absolute(turn_a2) > 0.0,
+                select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+                open_a2,
+            )
         # A2: its turn
         axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE - coupling_12*motor_a1/DEGREE, near_a2)
+        motor_a2 = DEGREE*(axis_a2 - offset_a2)
+        if everywhere(absolute(turn_a3) > 0.0):
+            near_a3 = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
+        else:
+            ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
+            free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
+            # A3: where its turn is open
+            open_a3 = select(
+                single_a3 > 0.0, mid_a3,
+                offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE,
+            )
+            near_a3 = select(
+                absolute(turn_a3) > 0.0,
+                select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+                open_a3,
+            )
         cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
         sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
         cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
         sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
-        motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
-        free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-        # A3: where its turn is open
-        open_a3 = select(
-            single_a3 > 0.0, mid_a3,
-            offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE,
-        )
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
         # A3: its turn
         axis_a3 = nearest_period(
             offset_a3 + atan2(sin_a3, cos_a3)/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE, near_a3,
@@ -251,3 +273,229 @@ class ArrayPrograms(Programs):
         # limits of joint 3
         require(status, (value_joint_3 >= lowest_joint_3) & (value_joint_3 <= highest_joint_3), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        turn_a1, turn_a2, turn_a3 = turns
+        ref_a1, ref_a2, ref_a3 = reference
+        k = self.constants
+        coupling_12 = k.coupling_12
+        coupling_13 = k.coupling_13
+        coupling_23 = k.coupling_23
+        link_length_1 = k.link_length_1
+        link_length_2 = k.link_length_2
+        link_length_3 = k.link_length_3
+        machine_scale = k.machine_scale
+        mid_a1 = k.mid_a1
+        mid_a2 = k.mid_a2
+        mid_a3 = k.mid_a3
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        scale_a2 = k.scale_a2
+        single_a1 = k.single_a1
+        single_a2 = k.single_a2
+        single_a3 = k.single_a3
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        require(
+            status,
+            (
+                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
+                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
+                & (absolute(r33) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
+        require(
+            status,
+            (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
+            Status.BAD_INPUT,
+        )
+        # columns of length one, at right angles
+        require(
+            status,
+            (
+                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
+                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
+                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
+                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
+                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
+            ),
+            Status.BAD_INPUT,
+        )
+        # a right-handed frame
+        require(
+            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
+            Status.BAD_INPUT,
+        )
+        heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
+        heading_across = r21 - r12
+        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        # the tool points exactly the opposite way
+        require(status, heading_length > 1e-11, Status.UNREACHABLE)
+        # z of a planar machine
+        require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
+        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
+        cos_heading = heading_along/heading_divisor
+        wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
+        sin_heading = heading_across/heading_divisor
+        wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
+        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        # kept as a product
+        sine_square_a2 = (
+            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
+            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
+        )
+        # out of reach
+        require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
+        free_a1 = (ref_a1 - offset_a1)*DEGREE
+        cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
+        sin_a2_right = root(sine_square_a2)
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_a1 = link_length_1 + link_length_2*cos_a2
+            arm_across_a1_right = link_length_2*sin_a2_right
+            # a1: linear pair in the x and y equations
+            along_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
+            across_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
+            length_a1_right = select(
+                across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0,
+                root(across_a1_right*across_a1_right + along_a1_right*along_a1_right),
+                1.0,
+            )
+            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
+            sin_a1_right = across_a1_right/length_a1_right
+            along_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y  # a1: linear pair in the x and y equations
+            across_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
+            length_a1_left = select(
+                across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0,
+                root(across_a1_left*across_a1_left + along_a1_left*along_a1_left),
+                1.0,
+            )
+            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
+            sin_a1_left = across_a1_left/length_a1_left
+        else:
+            arm_along_a1 = link_length_1 + link_length_2*cos_a2
+            arm_across_a1_right = link_length_2*sin_a2_right
+            # a1: linear pair in the x and y equations
+            along_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
+            across_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
+            length_a1_right = select(
+                ((reach > 1e-11*machine_scale) & (across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0)),
+                root(across_a1_right*across_a1_right + along_a1_right*along_a1_right),
+                1.0,
+            )
+            # its reference where it is free
+            cos_a1_right = select(reach > 1e-11*machine_scale, along_a1_right/length_a1_right, cos(free_a1))
+            sin_a1_right = select(reach > 1e-11*machine_scale, across_a1_right/length_a1_right, sin(free_a1))
+            along_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y  # a1: linear pair in the x and y equations
+            across_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
+            length_a1_left = select(
+                ((reach > 1e-11*machine_scale) & (across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0)),
+                root(across_a1_left*across_a1_left + along_a1_left*along_a1_left),
+                1.0,
+            )
+            # its reference where it is free
+            cos_a1_left = select(reach > 1e-11*machine_scale, along_a1_left/length_a1_left, cos(free_a1))
+            sin_a1_left = select(reach > 1e-11*machine_scale, across_a1_left/length_a1_left, sin(free_a1))
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
+        ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
+        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
+        motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
+        if everywhere(absolute(turn_a2) > 0.0):
+            near_a2_right = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
+            near_a2_left = near_a2_right
+        else:
+            free_a2 = ref_motor_a2 + coupling_12*free_a1
+            # A2: where its turn is open
+            open_a2_right = select(
+                single_a2 > 0.0, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_right/DEGREE,
+            )
+            near_a2_right = select(
+                absolute(turn_a2) > 0.0,
+                select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+                open_a2_right,
+            )
+            # A2: where its turn is open
+            open_a2_left = select(single_a2 > 0.0, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_left/DEGREE)
+            near_a2_left = select(
+                absolute(turn_a2) > 0.0,
+                select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+                open_a2_left,
+            )
+        # A2: its turn
+        axis_a2_right = nearest_period(
+            offset_a2 + atan2(sin_a2_right, cos_a2)/DEGREE - coupling_12*motor_a1_right/DEGREE, near_a2_right,
+        )
+        motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
+        # A2: its turn
+        axis_a2_left = nearest_period(
+            offset_a2 + atan2(-sin_a2_right, cos_a2)/DEGREE - coupling_12*motor_a1_left/DEGREE, near_a2_left,
+        )
+        motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
+        if everywhere(absolute(turn_a3) > 0.0):
+            near_a3_right = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
+            near_a3_left = near_a3_right
+        else:
+            ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
+            free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
+            # A3: where its turn is open
+            open_a3_right = select(
+                single_a3 > 0.0, mid_a3,
+                offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE,
+            )
+            near_a3_right = select(
+                absolute(turn_a3) > 0.0,
+                select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+                open_a3_right,
+            )
+            # A3: where its turn is open
+            open_a3_left = select(
+                single_a3 > 0.0, mid_a3,
+                offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE,
+            )
+            near_a3_left = select(
+                absolute(turn_a3) > 0.0,
+                select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+                open_a3_left,
+            )
+        cos_a12_right = cos_a1_right*cos_a2 - sin_a1_right*sin_a2_right
+        sin_a12_right = cos_a1_right*sin_a2_right + cos_a2*sin_a1_right
+        cos_a3_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading  # a3: what the sum a123 leaves
+        sin_a3_right = cos_a12_right*sin_heading - cos_heading*sin_a12_right
+        # A3: its turn
+        axis_a3_right = nearest_period(
+            (
+                offset_a3 + atan2(sin_a3_right, cos_a3_right)/DEGREE
+                - (coupling_13*motor_a1_right + coupling_23*motor_a2_right)/DEGREE
+            ),
+            near_a3_right,
+        )
+        cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
+        sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
+        cos_a3_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading  # a3: what the sum a123 leaves
+        sin_a3_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
+        # A3: its turn
+        axis_a3_left = nearest_period(
+            (
+                offset_a3 + atan2(sin_a3_left, cos_a3_left)/DEGREE
+                - (coupling_13*motor_a1_left + coupling_23*motor_a2_left)/DEGREE
+            ),
+            near_a3_left,
+        )
+        return (
+            ((axis_a1_right, axis_a2_right, axis_a3_right), refused(status, 0.0)),
+            ((axis_a1_left, axis_a2_left, axis_a3_left), refused(status, 0.0)),
+        )

@@ -3,9 +3,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from softkin._array import Codes, Programs, Reals, Rotation, Vector, absolute, passed, require, root, select
+from softkin._array import (
+    Codes,
+    Programs,
+    Reals,
+    Rotation,
+    Vector,
+    absolute,
+    passed,
+    refused,
+    require,
+    root,
+    select,
+)
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -231,3 +244,224 @@ class ArrayPrograms(Programs):
         # limits of A3
         require(status, (axis_a3 >= lowest_a3) & (axis_a3 <= highest_a3), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        k = self.constants
+        arm_length = k.arm_length
+        assembly_sign = k.assembly_sign
+        cos_rail_angle = k.cos_rail_angle
+        inner_radius = k.inner_radius
+        min_type2_margin = k.min_type2_margin
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        outer_radius = k.outer_radius
+        sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
+        sin_rail_angle = k.sin_rail_angle
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        span_1_x = outer_radius + x - inner_radius  # rod 1
+        # a1: quadratic in the rod 1 equation
+        root_square_a1 = (
+            arm_length*arm_length + z*z*cos_rail_angle*cos_rail_angle + 2.0*span_1_x*z*cos_rail_angle*sin_rail_angle
+            + span_1_x*span_1_x*sin_rail_angle*sin_rail_angle - span_1_x*span_1_x - y*y - z*z
+        )
+        # rod 1 cannot reach
+        require(status, root_square_a1 >= -1e-12*arm_length*arm_length, Status.UNREACHABLE)
+        span_2_x = 0.5*inner_radius + x - 0.5*outer_radius  # rod 2
+        span_2_y = y + 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*inner_radius  # rod 2
+        # a2: quadratic in the rod 2 equation
+        root_square_a2 = (
+            arm_length*arm_length + z*z*cos_rail_angle*cos_rail_angle
+            + 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
+            + 0.75*span_2_y*span_2_y*sin_rail_angle*sin_rail_angle
+            + root(3.0)*span_2_y*z*cos_rail_angle*sin_rail_angle - span_2_x*span_2_x - span_2_y*span_2_y - z*z
+            - span_2_x*z*cos_rail_angle*sin_rail_angle - 0.5*root(3.0)*span_2_x*span_2_y*sin_rail_angle*sin_rail_angle
+        )
+        # rod 2 cannot reach
+        require(status, root_square_a2 >= -1e-12*arm_length*arm_length, Status.UNREACHABLE)
+        span_3_y = y + 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius  # rod 3
+        # a3: quadratic in the rod 3 equation
+        root_square_a3 = (
+            arm_length*arm_length + z*z*cos_rail_angle*cos_rail_angle
+            + 0.25*span_2_x*span_2_x*sin_rail_angle*sin_rail_angle
+            + 0.75*span_3_y*span_3_y*sin_rail_angle*sin_rail_angle
+            + 0.5*root(3.0)*span_2_x*span_3_y*sin_rail_angle*sin_rail_angle - span_2_x*span_2_x - span_3_y*span_3_y
+            - z*z - span_2_x*z*cos_rail_angle*sin_rail_angle - root(3.0)*span_3_y*z*cos_rail_angle*sin_rail_angle
+        )
+        # rod 3 cannot reach
+        require(status, root_square_a3 >= -1e-12*arm_length*arm_length, Status.UNREACHABLE)
+        # ball joint of rod 1
+        require(status, absolute(y)/arm_length <= sin_max_angle_ball_joint, Status.UNREACHABLE)
+        # ball joint of rod 2
+        require(
+            status, absolute(0.5*y/arm_length + 0.5*root(3.0)*x/arm_length) <= sin_max_angle_ball_joint,
+            Status.UNREACHABLE,
+        )
+        # ball joint of rod 3
+        require(
+            status, absolute(0.5*root(3.0)*x/arm_length - 0.5*y/arm_length) <= sin_max_angle_ball_joint,
+            Status.UNREACHABLE,
+        )
+        middle_a1 = z*cos_rail_angle + span_1_x*sin_rail_angle
+        a1_below = root(root_square_a1) - middle_a1
+        pivot_1_x_below = inner_radius - outer_radius - a1_below*sin_rail_angle  # rod 1
+        rod_1_x_below = x - pivot_1_x_below
+        pivot_1_z_below = -a1_below*cos_rail_angle  # rod 1
+        rod_1_z_below = z - pivot_1_z_below
+        middle_a2 = 0.5*span_2_x*sin_rail_angle - z*cos_rail_angle - 0.5*root(3.0)*span_2_y*sin_rail_angle
+        a2_below = middle_a2 + root(root_square_a2)
+        pivot_2_x_below = 0.5*outer_radius + 0.5*a2_below*sin_rail_angle - 0.5*inner_radius  # rod 2
+        rod_2_x_below = x - pivot_2_x_below
+        # rod 2
+        pivot_2_y_below = (
+            0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2_below*sin_rail_angle
+        )
+        rod_2_y_below = y - pivot_2_y_below
+        pivot_2_z_below = -a2_below*cos_rail_angle  # rod 2
+        rod_2_z_below = z - pivot_2_z_below
+        middle_a3 = 0.5*span_2_x*sin_rail_angle + 0.5*root(3.0)*span_3_y*sin_rail_angle - z*cos_rail_angle
+        a3_below = middle_a3 + root(root_square_a3)
+        pivot_3_x_below = 0.5*outer_radius + 0.5*a3_below*sin_rail_angle - 0.5*inner_radius  # rod 3
+        rod_3_x_below = x - pivot_3_x_below
+        # rod 3
+        pivot_3_y_below = (
+            0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3_below*sin_rail_angle - 0.5*root(3.0)*inner_radius
+        )
+        rod_3_y_below = y - pivot_3_y_below
+        pivot_3_z_below = -a3_below*cos_rail_angle  # rod 3
+        rod_3_z_below = z - pivot_3_z_below
+        type2_rods_coplanar_below_below_below = (
+            assembly_sign
+            *(
+                rod_1_x_below*rod_2_y_below*rod_3_z_below + rod_1_z_below*rod_2_x_below*rod_3_y_below
+                + rod_2_z_below*rod_3_x_below*y - rod_1_x_below*rod_2_z_below*rod_3_y_below
+                - rod_1_z_below*rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_z_below*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0.0, 3.0)
+        axis_a1_below = a1_below + offset_a1
+        axis_a2_below = a2_below + offset_a2
+        axis_a3_below = a3_below + offset_a3
+        a1_above = -middle_a1 - root(root_square_a1)
+        pivot_1_x_above = inner_radius - outer_radius - a1_above*sin_rail_angle  # rod 1
+        rod_1_x_above = x - pivot_1_x_above
+        pivot_1_z_above = -a1_above*cos_rail_angle  # rod 1
+        rod_1_z_above = z - pivot_1_z_above
+        type2_rods_coplanar_above_below_below = (
+            assembly_sign
+            *(
+                rod_1_x_above*rod_2_y_below*rod_3_z_below + rod_1_z_above*rod_2_x_below*rod_3_y_below
+                + rod_2_z_below*rod_3_x_below*y - rod_1_x_above*rod_2_z_below*rod_3_y_below
+                - rod_1_z_above*rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_z_below*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0.0, 3.0)
+        axis_a1_above = a1_above + offset_a1
+        a2_above = middle_a2 - root(root_square_a2)
+        pivot_2_x_above = 0.5*outer_radius + 0.5*a2_above*sin_rail_angle - 0.5*inner_radius  # rod 2
+        rod_2_x_above = x - pivot_2_x_above
+        # rod 2
+        pivot_2_y_above = (
+            0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2_above*sin_rail_angle
+        )
+        rod_2_y_above = y - pivot_2_y_above
+        pivot_2_z_above = -a2_above*cos_rail_angle  # rod 2
+        rod_2_z_above = z - pivot_2_z_above
+        type2_rods_coplanar_below_above_below = (
+            assembly_sign
+            *(
+                rod_1_x_below*rod_2_y_above*rod_3_z_below + rod_1_z_below*rod_2_x_above*rod_3_y_below
+                + rod_2_z_above*rod_3_x_below*y - rod_1_x_below*rod_2_z_above*rod_3_y_below
+                - rod_1_z_below*rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_z_below*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0.0, 3.0)
+        axis_a2_above = a2_above + offset_a2
+        type2_rods_coplanar_above_above_below = (
+            assembly_sign
+            *(
+                rod_1_x_above*rod_2_y_above*rod_3_z_below + rod_1_z_above*rod_2_x_above*rod_3_y_below
+                + rod_2_z_above*rod_3_x_below*y - rod_1_x_above*rod_2_z_above*rod_3_y_below
+                - rod_1_z_above*rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_z_below*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0.0, 3.0)
+        a3_above = middle_a3 - root(root_square_a3)
+        pivot_3_x_above = 0.5*outer_radius + 0.5*a3_above*sin_rail_angle - 0.5*inner_radius  # rod 3
+        rod_3_x_above = x - pivot_3_x_above
+        # rod 3
+        pivot_3_y_above = (
+            0.5*root(3.0)*outer_radius + 0.5*root(3.0)*a3_above*sin_rail_angle - 0.5*root(3.0)*inner_radius
+        )
+        rod_3_y_above = y - pivot_3_y_above
+        pivot_3_z_above = -a3_above*cos_rail_angle  # rod 3
+        rod_3_z_above = z - pivot_3_z_above
+        type2_rods_coplanar_below_below_above = (
+            assembly_sign
+            *(
+                rod_1_x_below*rod_2_y_below*rod_3_z_above + rod_1_z_below*rod_2_x_below*rod_3_y_above
+                + rod_2_z_below*rod_3_x_above*y - rod_1_x_below*rod_2_z_below*rod_3_y_above
+                - rod_1_z_below*rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_z_above*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0.0, 3.0)
+        axis_a3_above = a3_above + offset_a3
+        type2_rods_coplanar_above_below_above = (
+            assembly_sign
+            *(
+                rod_1_x_above*rod_2_y_below*rod_3_z_above + rod_1_z_above*rod_2_x_below*rod_3_y_above
+                + rod_2_z_below*rod_3_x_above*y - rod_1_x_above*rod_2_z_below*rod_3_y_above
+                - rod_1_z_above*rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_z_above*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0.0, 3.0)
+        type2_rods_coplanar_below_above_above = (
+            assembly_sign
+            *(
+                rod_1_x_below*rod_2_y_above*rod_3_z_above + rod_1_z_below*rod_2_x_above*rod_3_y_above
+                + rod_2_z_above*rod_3_x_above*y - rod_1_x_below*rod_2_z_above*rod_3_y_above
+                - rod_1_z_below*rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_z_above*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0.0, 3.0)
+        type2_rods_coplanar_above_above_above = (
+            assembly_sign
+            *(
+                rod_1_x_above*rod_2_y_above*rod_3_z_above + rod_1_z_above*rod_2_x_above*rod_3_y_above
+                + rod_2_z_above*rod_3_x_above*y - rod_1_x_above*rod_2_z_above*rod_3_y_above
+                - rod_1_z_above*rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_z_above*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0.0, 3.0)
+        return (
+            ((axis_a1_below, axis_a2_below, axis_a3_below), refused(status, refusal_below_below_below)),
+            ((axis_a1_above, axis_a2_below, axis_a3_below), refused(status, refusal_above_below_below)),
+            ((axis_a1_below, axis_a2_above, axis_a3_below), refused(status, refusal_below_above_below)),
+            ((axis_a1_above, axis_a2_above, axis_a3_below), refused(status, refusal_above_above_below)),
+            ((axis_a1_below, axis_a2_below, axis_a3_above), refused(status, refusal_below_below_above)),
+            ((axis_a1_above, axis_a2_below, axis_a3_above), refused(status, refusal_above_below_above)),
+            ((axis_a1_below, axis_a2_above, axis_a3_above), refused(status, refusal_below_above_above)),
+            ((axis_a1_above, axis_a2_above, axis_a3_above), refused(status, refusal_above_above_above)),
+        )

@@ -3,9 +3,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from softkin._array import Codes, Programs, Reals, Rotation, Vector, absolute, passed, require, root, select
+from softkin._array import (
+    Codes,
+    Programs,
+    Reals,
+    Rotation,
+    Vector,
+    absolute,
+    passed,
+    refused,
+    require,
+    root,
+    select,
+)
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -186,3 +199,164 @@ class ArrayPrograms(Programs):
         # limits of A3
         require(status, (axis_a3 >= lowest_a3) & (axis_a3 <= highest_a3), Status.UNREACHABLE)
         return status
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        x, y, z = position
+        k = self.constants
+        arm_length = k.arm_length
+        assembly_sign = k.assembly_sign
+        min_type2_margin = k.min_type2_margin
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        pivot_1_x = k.pivot_1_x
+        pivot_1_y = k.pivot_1_y
+        pivot_2_x = k.pivot_2_x
+        pivot_2_y = k.pivot_2_y
+        pivot_3_x = k.pivot_3_x
+        pivot_3_y = k.pivot_3_y
+        rail_x_1 = k.rail_x_1
+        rail_x_2 = k.rail_x_2
+        rail_x_3 = k.rail_x_3
+        rail_y_1 = k.rail_y_1
+        rail_y_2 = k.rail_y_2
+        rail_y_3 = k.rail_y_3
+        tcp_displacement = k.tcp_displacement
+        status = passed(position)
+        # numbers of reasonable size
+        require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
+        span_1_x = x + rail_x_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
+        span_1_y = y + rail_y_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
+        # a1: quadratic in the rod 1 equation
+        root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
+        # rod 1 cannot reach
+        require(status, root_square_a1 >= -1e-12*arm_length*arm_length, Status.UNREACHABLE)
+        span_2_x = x + rail_x_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
+        span_2_y = y + rail_y_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
+        # a2: quadratic in the rod 2 equation
+        root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
+        # rod 2 cannot reach
+        require(status, root_square_a2 >= -1e-12*arm_length*arm_length, Status.UNREACHABLE)
+        span_3_x = x + rail_x_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
+        span_3_y = y + rail_y_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
+        # a3: quadratic in the rod 3 equation
+        root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
+        # rod 3 cannot reach
+        require(status, root_square_a3 >= -1e-12*arm_length*arm_length, Status.UNREACHABLE)
+        rod_1_x = x - pivot_1_x
+        rod_1_y = y - pivot_1_y
+        a1_above = z + root(root_square_a1)
+        rod_1_z_above = z - a1_above
+        rod_2_x = x - pivot_2_x
+        rod_2_y = y - pivot_2_y
+        a2_above = z + root(root_square_a2)
+        rod_2_z_above = z - a2_above
+        rod_3_x = x - pivot_3_x
+        rod_3_y = y - pivot_3_y
+        a3_above = z + root(root_square_a3)
+        rod_3_z_above = z - a3_above
+        type2_rods_coplanar_above_above_above = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0.0, 3.0)
+        axis_a1_above = a1_above + offset_a1
+        axis_a2_above = a2_above + offset_a2
+        axis_a3_above = a3_above + offset_a3
+        a1_below = z - root(root_square_a1)
+        rod_1_z_below = z - a1_below
+        type2_rods_coplanar_below_above_above = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0.0, 3.0)
+        axis_a1_below = a1_below + offset_a1
+        a2_below = z - root(root_square_a2)
+        rod_2_z_below = z - a2_below
+        type2_rods_coplanar_above_below_above = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0.0, 3.0)
+        axis_a2_below = a2_below + offset_a2
+        type2_rods_coplanar_below_below_above = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0.0, 3.0)
+        a3_below = z - root(root_square_a3)
+        rod_3_z_below = z - a3_below
+        type2_rods_coplanar_above_above_below = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_above*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0.0, 3.0)
+        axis_a3_below = a3_below + offset_a3
+        type2_rods_coplanar_below_above_below = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0.0, 3.0)
+        type2_rods_coplanar_above_below_below = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_above*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0.0, 3.0)
+        type2_rods_coplanar_below_below_below = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0.0, 3.0)
+        return (
+            ((axis_a1_above, axis_a2_above, axis_a3_above), refused(status, refusal_above_above_above)),
+            ((axis_a1_below, axis_a2_above, axis_a3_above), refused(status, refusal_below_above_above)),
+            ((axis_a1_above, axis_a2_below, axis_a3_above), refused(status, refusal_above_below_above)),
+            ((axis_a1_below, axis_a2_below, axis_a3_above), refused(status, refusal_below_below_above)),
+            ((axis_a1_above, axis_a2_above, axis_a3_below), refused(status, refusal_above_above_below)),
+            ((axis_a1_below, axis_a2_above, axis_a3_below), refused(status, refusal_below_above_below)),
+            ((axis_a1_above, axis_a2_below, axis_a3_below), refused(status, refusal_above_below_below)),
+            ((axis_a1_below, axis_a2_below, axis_a3_below), refused(status, refusal_below_below_below)),
+        )

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from softkin._array import (
@@ -15,8 +16,10 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    everywhere,
     nearest_period,
     passed,
+    refused,
     require,
     root,
     select,
@@ -134,13 +137,19 @@ class ArrayPrograms(OrientationPrograms):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
-        free_c = (ref_c - offset_c)*DEGREE
         radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
-        along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
-        length_c = select(radius_c > 1e-11, radius_c, 1.0)
-        cos_c = select(radius_c > 1e-11, along_c/length_c, cos(free_c))  # its reference where it is free
-        across_c = -r32*sigma_hand
-        sin_c = select(radius_c > 1e-11, across_c/length_c, sin(free_c))
+        if everywhere(radius_c > 1e-11):
+            along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
+            cos_c = along_c/radius_c  # its reference where it is free
+            across_c = -r32*sigma_hand
+            sin_c = across_c/radius_c
+        else:
+            free_c = (ref_c - offset_c)*DEGREE
+            along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
+            length_c = select(radius_c > 1e-11, radius_c, 1.0)
+            cos_c = select(radius_c > 1e-11, along_c/length_c, cos(free_c))  # its reference where it is free
+            across_c = -r32*sigma_hand
+            sin_c = select(radius_c > 1e-11, across_c/length_c, sin(free_c))
         r22_before_c = r22*cos_c + r21*sin_c
         r12_before_c = r12*cos_c + r11*sin_c
         sin_a = -r12_before_c
@@ -217,4 +226,89 @@ class ArrayPrograms(OrientationPrograms):
                 r31*tool_offset_x + r32*tool_offset_y + r33*tool_offset_z,
             ),
             status,
+        )
+
+    def every_branch(
+        self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
+    ) -> tuple[tuple[Reals, Codes], ...]:
+        """Every slot: its axes and statuses."""
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        turn_a, turn_b, turn_c = turns
+        ref_a, ref_b, ref_c = reference
+        k = self.constants
+        mid_a = k.mid_a
+        mid_b = k.mid_b
+        mid_c = k.mid_c
+        offset_a = k.offset_a
+        offset_b = k.offset_b
+        offset_c = k.offset_c
+        single_a = k.single_a
+        single_b = k.single_b
+        single_c = k.single_c
+        status = passed(position)
+        # numbers of reasonable size
+        require(
+            status,
+            (
+                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
+                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
+                & (absolute(r33) <= 1e9)
+            ),
+            Status.BAD_INPUT,
+        )
+        require(
+            status,
+            (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9),
+            Status.BAD_INPUT,
+        )
+        # columns of length one, at right angles
+        require(
+            status,
+            (
+                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
+                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
+                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
+                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
+                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
+            ),
+            Status.BAD_INPUT,
+        )
+        # a right-handed frame
+        require(
+            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
+            Status.BAD_INPUT,
+        )
+        radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
+        if everywhere(radius_c > 1e-11):
+            cos_c_down = r31/radius_c  # its reference where it is free
+            sin_c_down = -r32/radius_c
+            cos_c_up = -cos_c_down  # its reference where it is free
+            sin_c_up = -sin_c_down
+        else:
+            free_c = (ref_c - offset_c)*DEGREE
+            length_c = select(radius_c > 1e-11, radius_c, 1.0)
+            cos_c_down = select(radius_c > 1e-11, r31/length_c, cos(free_c))  # its reference where it is free
+            sin_c_down = select(radius_c > 1e-11, -r32/length_c, sin(free_c))
+            cos_c_up = select(radius_c > 1e-11, -r31/length_c, cos(free_c))  # its reference where it is free
+            sin_c_up = select(radius_c > 1e-11, r32/length_c, sin(free_c))
+        r22_before_c_down = r22*cos_c_down + r21*sin_c_down
+        r12_before_c_down = r12*cos_c_down + r11*sin_c_down
+        open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
+        near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
+        # A: its turn
+        axis_a_down = nearest_period(offset_a + atan2(-r12_before_c_down, r22_before_c_down)/DEGREE, near_a)
+        open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
+        near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
+        axis_b_down = nearest_period(offset_b + atan2(radius_c, r33)/DEGREE, near_b)  # B: its turn
+        open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
+        near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
+        axis_c_down = nearest_period(offset_c + atan2(sin_c_down, cos_c_down)/DEGREE, near_c)  # C: its turn
+        r22_before_c_up = r22*cos_c_up + r21*sin_c_up
+        r12_before_c_up = r12*cos_c_up + r11*sin_c_up
+        axis_a_up = nearest_period(offset_a + atan2(-r12_before_c_up, r22_before_c_up)/DEGREE, near_a)  # A: its turn
+        axis_b_up = nearest_period(offset_b + atan2(-radius_c, r33)/DEGREE, near_b)  # B: its turn
+        axis_c_up = nearest_period(offset_c + atan2(sin_c_up, cos_c_up)/DEGREE, near_c)  # C: its turn
+        return (
+            ((axis_a_down, axis_b_down, axis_c_down), refused(status, 0.0)),
+            ((axis_a_up, axis_b_up, axis_c_up), refused(status, 0.0)),
         )

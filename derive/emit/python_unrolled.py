@@ -1,0 +1,151 @@
+"""All branches of the inverse in one straight line: three functions of plain numbers, and one program on arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.emit.python_layout import fold
+from derive.emit.python_methods import POSITION, ROTATION, branch
+from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, primitives_in, spelled
+from derive.emit.python_program import Argument, Method, array_statements, constants_of, statement_lines, unpacked
+from derive.kinematics import Kinematics
+from derive.program import Program, Status, real
+from derive.unroll import REFUSAL, Sign, choices, is_straight, principal, specialised, suffixed, unroll, with_limits
+
+_ARRAY = ArrayPrinter()
+_SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True)
+_FRAME = Argument("frame", "Frame", (POSITION, ROTATION))
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function of the module: its head, what it says of itself, its statements."""
+
+    head: list[str]
+    summary: str
+    body: list[str]
+
+
+@dataclass(frozen=True)
+class Unrolled:
+    """What the templates need: the functions, the constants that they read, the primitives that they call."""
+
+    functions: tuple[Function, ...]
+    constants: list[str]
+    primitives: list[str]
+
+
+def can_be_unrolled(kin: Kinematics) -> bool:
+    """Whether the inverse is a straight line for every branch."""
+    return is_straight(kin.branch) and is_straight(kin.limits)
+
+
+def signs(kin: Kinematics) -> tuple[Sign, ...]:
+    """The branch signs, with the names of the two branches."""
+    return tuple(Sign(real(f"sigma_{b.name}"), b.names) for b in kin.branches)
+
+
+def every_branch(kin: Kinematics) -> Program:
+    """All branches, periods nearest to the reference, limits tested."""
+    return unroll(_nearest(kin, with_limits(kin.branch, kin.limits)), signs(kin))
+
+
+def branches(kin: Kinematics) -> Program:
+    """All branches in principal values."""
+    return unroll(principal(_nearest(kin, kin.branch)), signs(kin))
+
+
+def array_method(kin: Kinematics) -> Method:
+    """All branches on arrays, turns as commanded, limits not tested."""
+    program = unroll(kin.branch, signs(kin))
+    arguments = tuple(a for a in branch(kin).arguments if a.name != "signs")
+    return Method("every_branch", "Every slot: its axes and statuses.", program, arguments, "tuple[tuple[Reals, Codes], ...]", ())
+
+
+def array_lines(kin: Kinematics, method: Method) -> list[str]:
+    """Its body."""
+    values = {o.name: _ARRAY.print(o.value) for o in method.program.outputs}
+    lines = [*array_statements(method), "return ("]
+    for choice in choices(len(kin.branches)):
+        refusal = values[suffixed(REFUSAL, signs(kin), choice)]
+        axes = _tuple([values[suffixed(j.axis.name, signs(kin), choice)] for j in kin.mechanism.joints])
+        lines += fold(f"({axes}, refused(status, {refusal})),", 4)
+    return [*lines, ")"]
+
+
+def _nearest(kin: Kinematics, program: Program) -> Program:
+    """No turn is commanded."""
+    return specialised(program, {j.turn: sp.Integer(0) for j in kin.period_joints})
+
+
+def unrolled(kin: Kinematics) -> Unrolled:
+    """The functions on plain numbers."""
+    methods = _methods(kin)
+    bodies = [_slots(kin, methods[0]), _directions(kin, methods[1]), _direction(methods[2])]
+    functions = tuple(_function(m, body) for m, body in zip(methods, bodies, strict=True))
+    constants = sorted({c for m in methods for c in constants_of(m)})
+    return Unrolled(functions, [spelled(c) for c in constants], primitives_in(line for f in functions for line in f.body))
+
+
+def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
+    position, rotation, sign_values, _, reference = branch(kin).arguments
+    one = _nearest(kin, kin.branch)
+    return (
+        Method(
+            "every_branch", "Every slot: its axes, or the number of its status.", every_branch(kin),
+            (position, rotation, reference), "tuple[Reals | float, ...]", (),
+        ),
+        Method(
+            "branches", "Every slot in principal values, of input that is trusted.", branches(kin),
+            (_FRAME, reference), "tuple[Reals | None, ...]", (),
+        ),
+        Method(
+            "branch", "One branch in principal values, of input that is trusted.", principal(one),
+            (_FRAME, sign_values, reference), "Reals | None", (),
+        ),
+    )  # fmt: skip
+
+
+def _function(method: Method, body: list[str]) -> Function:
+    arguments = ", ".join(f"{a.name}: {a.kind}" for a in method.arguments)
+    return Function(fold(f"def {method.name}({arguments}) -> {method.kind}:", 4), method.summary, [*unpacked(method), *body])
+
+
+def _slots(kin: Kinematics, method: Method) -> list[str]:
+    """The body of the checked function."""
+    count = 2 ** len(kin.branches)
+    lines = statement_lines(method.program, lambda status: f"{count}*({list(Status).index(status)}.0,)", _SCALAR)
+    return [*lines, *_returned(kin, method.program, lambda refusal: refusal)]
+
+
+def _directions(kin: Kinematics, method: Method) -> list[str]:
+    count = 2 ** len(kin.branches)
+    lines = statement_lines(method.program, lambda _: f"{count}*(None,)", _DIRECTIONS)
+    return [*lines, *_returned(kin, method.program, lambda _: "None")]
+
+
+def _direction(method: Method) -> list[str]:
+    lines = statement_lines(method.program, lambda _: "None", _DIRECTIONS)
+    values = [_DIRECTIONS.print(o.value) for o in method.program.outputs]
+    return [*lines, *fold(f"return {_tuple(values)}")]
+
+
+def _returned(kin: Kinematics, program: Program, refused: Callable[[str], str]) -> list[str]:
+    """The axes of every slot, or what stands for its refusal."""
+    values = {o.name: o.value for o in program.outputs}
+    lines = ["return ("]
+    for choice in choices(len(kin.branches)):
+        refusal = values[suffixed(REFUSAL, signs(kin), choice)]
+        axes = _tuple([_DIRECTIONS.print(values[suffixed(j.axis.name, signs(kin), choice)]) for j in kin.mechanism.joints])
+        text = axes
+        if refusal != 0:
+            text = f"{axes} if {_SCALAR.print(refusal)} == 0.0 else {refused(_SCALAR.print(refusal))}"
+        lines += fold(f"({text})," if refusal != 0 else f"{text},", 4)
+    return [*lines, ")"]
+
+
+def _tuple(parts: list[str]) -> str:
+    return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"

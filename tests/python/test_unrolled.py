@@ -1,0 +1,144 @@
+"""All branches at once: `inverse_all`, `branches`, `branch` and batches against the branches one by one."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+import softkin
+from softkin import KinematicsError, Mechanism, Solution, Status
+from softkin._batch import CHUNK
+from softkin._configuration import slots
+
+from derive.catalogue import catalogue
+from derive.mechanism import Mechanism as Description
+
+DESCRIPTIONS = [m for _, m in catalogue() if not m.is_orientation or m.joints]
+IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+Frames = list[tuple[tuple[float, ...], tuple[tuple[float, ...], ...]]]
+
+
+def robot_of(description: Description, limit: float | None = None) -> Mechanism:
+    """A machine of the description's own dimensions; the limits are those of every axis that turns."""
+    values: dict[str, float] = {p.name: p.nominal for p in description.parameters}
+    if limit is not None:
+        for joint in description.joints:
+            if joint.is_angle and joint.pitch == 0:
+                values |= {f"lower_{joint.key}": -0.7 * limit, f"upper_{joint.key}": limit}
+    return softkin.catalogue()[description.name](**values)
+
+
+def samples(robot: Mechanism, count: int) -> tuple[Frames, np.ndarray]:
+    """Frames of random axes, every third drawn away from the machine, and random references."""
+    random = np.random.default_rng(8)
+    spans = [170.0 if axis.unit == "deg" else 90.0 for axis in robot.AXES]
+    frames: Frames = []
+    while len(frames) < count:
+        try:
+            (position, rotation), _ = robot.forward(random.uniform(-1, 1, len(spans)) * spans)
+        except KinematicsError:
+            position, rotation = tuple(random.uniform(-300, 300, 3).tolist()), IDENTITY
+        far = 1.4 if len(frames) % 3 == 0 else 1.0
+        frames.append((tuple(far * c for c in position), rotation))
+    return frames, random.uniform(-2, 2, (count, len(spans))) * spans
+
+
+def looped(robot: Mechanism, frame: tuple[object, ...], reference: tuple[float, ...]) -> tuple[object, ...]:
+    """The slots, one branch after the other."""
+    position, rotation = robot._pose(frame)  # type: ignore[arg-type]
+    return Mechanism._every_branch(robot, position, rotation, reference)
+
+
+@pytest.mark.parametrize("limit", [None, 120.0], ids=["no limits", "limits"])
+@pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
+def test_inverse_all_is_its_branches_one_by_one(description: Description, limit: float | None) -> None:
+    robot = robot_of(description, limit)
+    frames, references = samples(robot, 12 if description.search is not None else 60)
+    answers = 0
+    for frame, reference in zip(frames, references.tolist(), strict=True):
+        wanted = looped(robot, frame, tuple(reference))
+        for found, axes in zip(robot.inverse_all(frame, reference), wanted, strict=True):
+            if found.axes is None:
+                assert float(found.status) == axes
+            else:
+                answers += 1
+                assert found.axes == pytest.approx(axes, rel=1e-9, abs=1e-9)
+    assert answers >= 3
+
+
+@pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
+def test_trusted_input_gives_the_same_directions(description: Description) -> None:
+    """Axes differ by whole turns at most, and by what screws and gears make of them: the frame is the same."""
+    robot, is_geared = robot_of(description), any(joint.coupling != 0 for joint in description.joints)
+    frames, references = samples(robot, 8 if description.search is not None else 40)
+    every = slots((0,) * robot.BRANCHES)
+    for frame, reference in zip(frames, references.tolist(), strict=True):
+        solutions, near = robot.inverse_all(frame, reference), tuple(reference)
+        directions = robot.branches(frame, near)  # type: ignore[arg-type]
+        assert len(directions) == len(solutions)
+        for (_, signs), axes, solution in zip(every, directions, solutions, strict=True):
+            single = robot.branch(frame, signs, near)  # type: ignore[arg-type]
+            assert (axes is None) == (single is None) == (solution.axes is None)
+            if axes is not None and single is not None and solution.axes is not None:
+                assert single == pytest.approx(axes, rel=1e-9, abs=1e-9)
+                for axis, value, near_value in zip(robot.AXES, axes, solution.axes, strict=True):
+                    if axis.unit == "deg" and not is_geared:
+                        away = (value - near_value + 180.0) % 360.0 - 180.0 if axis.multi_turn else value - near_value
+                        assert abs(away) < 1e-8
+                again, _ = robot.forward(axes)
+                wanted, _ = robot.forward(solution.axes)
+                assert again.position == pytest.approx(wanted.position, rel=1e-9, abs=1e-7)
+
+
+@pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
+def test_a_batch_of_all_branches_is_its_rows(description: Description) -> None:
+    robot = robot_of(description, 120.0)
+    frames, references = samples(robot, 12 if description.search is not None else 60)
+    positions, rotations = np.array([f[0] for f in frames]), np.array([f[1] for f in frames])
+    positions[5] = np.nan
+    axes, statuses = robot.inverse_all_batch(positions, rotations, references)
+    assert axes.shape == (len(frames), 2**robot.BRANCHES, len(robot.AXES))
+    for row, frame in enumerate(zip(positions, rotations, strict=True)):
+        for slot, solution in enumerate(robot.inverse_all(frame, references[row])):
+            assert statuses[row, slot] == solution.status
+            if solution.axes is None:
+                assert np.all(np.isnan(axes[row, slot]))
+            else:
+                assert axes[row, slot] == pytest.approx(solution.axes, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["Kin_ArticulatedRobot_6DOF", "Kin_Delta_P3C_Type3"])
+def test_rows_in_chunks_are_the_rows_alone(name: str) -> None:
+    """Open and named branches mixed, across the edge of a chunk; one row there is refused, one is singular."""
+    description = next(d for d in DESCRIPTIONS if d.name == name)
+    robot = robot_of(description)
+    frames, references = samples(robot, 70)
+    rows = np.arange(CHUNK + 40) % 70
+    positions, rotations = np.array([f[0] for f in frames])[rows], np.array([f[1] for f in frames])[rows]
+    configurations = np.zeros((len(rows), len(robot.CONFIGURATION)), int)
+    configurations[:, : robot.BRANCHES] = np.random.default_rng(2).integers(0, 4, (len(rows), robot.BRANCHES))
+    positions[CHUNK - 1] = np.inf
+    axes, statuses = robot.inverse_batch(positions, rotations, configurations, references[rows])
+    assert statuses[CHUNK - 1] == Status.BAD_INPUT
+    for row in (*range(40), *range(CHUNK - 20, CHUNK + 40)):
+        alone, status = robot.inverse_batch(positions[[row]], rotations[[row]], configurations[[row]], references[rows[[row]]])
+        assert status[0] == statuses[row]
+        np.testing.assert_allclose(axes[row], alone[0], rtol=1e-12, atol=1e-12)
+
+
+def test_the_solutions_are_as_a_tuple_of_them() -> None:
+    robot = robot_of(next(d for d in DESCRIPTIONS if d.name == "Kin_ArticulatedRobot_6DOF"))
+    (frame,), _ = samples(robot, 1)
+    found = robot.inverse_all(frame)
+    plain = tuple(found)
+    assert len(found) == 8 and all(isinstance(s, Solution) for s in plain)
+    assert found == plain and plain == found and found == robot.inverse_all(frame)
+    assert found != list(plain) and found != plain[:7]
+    assert hash(found) == hash(plain) and repr(found) == repr(plain)
+    assert found[0] == plain[0] and found[-1] == plain[-1] and found[2:5] == plain[2:5]
+    assert plain[3] in found and found.index(plain[3]) == plain.index(plain[3]) and list(reversed(found)) == list(reversed(plain))
+    assert copy.deepcopy(found) == plain and pickle.loads(pickle.dumps(found)) == plain
+    with pytest.raises(IndexError):
+        found[8]
