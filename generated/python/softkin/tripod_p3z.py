@@ -315,245 +315,245 @@ class TripodP3Z(OffsetKinematics):
             )
         if not (
             (
-                (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                - (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-            )*((1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1 - (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2) + ((1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1 - (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2)*((1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1 - (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2) < 4.0*arm_length*arm_length
+                (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                - (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+            )*((1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1 - (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2) + ((1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1 - (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2)*((1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1 - (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2) < 4.0*arm_length*arm_length
             and (
-                (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                - (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-            )*((1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1 - (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3) + ((1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1 - (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3)*((1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1 - (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3) < 4.0*arm_length*arm_length
+                (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                - (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+            )*((1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1 - (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3) + ((1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1 - (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3)*((1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1 - (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3) < 4.0*arm_length*arm_length
             and (
-                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                - (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3) + ((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3)*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3) < 4.0*arm_length*arm_length
+                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                - (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3) + ((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3)*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3) < 4.0*arm_length*arm_length
             and (
                 (
                     (
                         (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                         - (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
-                    )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                    )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                     - (
                         (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
                         - (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                    )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) < 0.0
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                    )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) < 0.0
                 )
                 or (
                     (
                         (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
                         - (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                    )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                    )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
                     - (
                         (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                         - (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
-                    )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) < 0.0
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                    )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) < 0.0
                 )
                 or (
                     (
                         (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                         - (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
-                    )*((((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) + ((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) - (((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) + ((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1))
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                    )*((((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) + ((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) - (((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) + ((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1))
                     + (
                         (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
                         - (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                    )*((((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) + ((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) - (((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) + ((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)) < 4.0*(((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) - ((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*(((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) - ((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*arm_length*arm_length
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                    )*((((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) + ((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) - (((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1) + ((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)) < 4.0*(((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) - ((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*(((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) - ((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*arm_length*arm_length
                 )
                 or (
                     (
                         (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                         - (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
-                    )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                    )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                     + (
                         (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
                         - (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                    )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                    )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
                     - (
                         (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                         - (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
-                    )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                    )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                     - (
                         (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
                         - (
                             (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)
                             + (
-                                (1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
-                                - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
-                            )*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                        )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
-                    )*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) > 2.0*(((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) - ((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*(((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) - ((1.0 - tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))
+                                (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+                                - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+                            )*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                        )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1)
+                    )*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) > 2.0*(((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) - ((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))*(((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1) - ((1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1)*((1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2 - (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1))
                 )
             )
         ):
