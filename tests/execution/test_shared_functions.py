@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 
 from derive.program import Atan2, NearestOnArc, NearestPeriod, Root, real
 from derive.run import evaluate
+from tests.execution.samples import tilted
 from tests.execution.units import compiled_shared
+from tests.mechanisms.test_garbage import NO_ROTATIONS
 from tests.st.library import StFault
 
 LIBRARY = compiled_shared()
@@ -190,3 +192,35 @@ def test_solve_what_is_no_number() -> None:
             determinant, solution = solved(*tables)
             assert determinant == 0.0
             assert not solution.any()
+
+
+def turned(seed: int) -> np.ndarray:
+    """A random rotation."""
+    return np.array(tilted(np.random.default_rng(seed)))
+
+
+def test_what_is_a_rotation() -> None:
+    """Nothing that is scaled, sheared, reflected or no number; a little rounding is allowed."""
+    is_rotation = LIBRARY.function("Softkin_IsRotation")
+    for seed in range(20):
+        rotation = turned(seed)
+        assert is_rotation(rotation.ravel().tolist())
+        assert is_rotation((rotation * (1 + 4e-7)).ravel().tolist())
+        for wrong in NO_ROTATIONS.values():
+            assert not is_rotation((rotation @ wrong).ravel().tolist())
+        for number in NO_NUMBERS:
+            for entry in range(9):
+                assert not is_rotation([number if i == entry else v for i, v in enumerate(rotation.ravel().tolist())])
+
+
+def test_a_rotation_as_another_sees_it() -> None:
+    relative = LIBRARY.function("Softkin_RelativeRotation")
+    for seed in range(20):
+        base, rotation = turned(seed), turned(100 + seed)
+        found = [math.nan] * 9
+        assert relative(found, base.ravel().tolist(), rotation.ravel().tolist())
+        np.testing.assert_allclose(np.array(found).reshape(3, 3), base.T @ rotation, rtol=0, atol=1e-15)
+        untouched = [0.5] * 9
+        for pair in ((2 * base, rotation), (base, 2 * rotation)):
+            assert not relative(untouched, *(part.ravel().tolist() for part in pair))
+        assert untouched == [0.5] * 9
