@@ -111,7 +111,8 @@ def _range_of(parameter: Parameter) -> tuple[Require, ...]:
     low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
     high = sp.Float(parameter.high) if parameter.high % 1 else sp.Integer(int(parameter.high))
     if parameter.role is Role.SIGNED_LENGTH:
-        inside = sp.And(sp.Gt(sp.Abs(bare), 0), sp.Le(sp.Abs(bare), min(high, LARGEST)))
+        apart = sp.Or(sp.Gt(bare, 0), sp.Lt(bare, 0))  # a comparison takes what is no number, a size does not
+        inside = sp.And(apart, sp.Ge(bare, low), sp.Le(bare, min(high, LARGEST)))
         return (Require(inside, Status.NOT_INITIALIZED, note),)
     above = sp.Gt(bare, low) if parameter.low_open else sp.Ge(bare, low)
     return (Require(sp.And(above, sp.Le(bare, min(high, LARGEST))), Status.NOT_INITIALIZED, note),)

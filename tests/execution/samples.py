@@ -11,11 +11,15 @@ from numpy.random import Generator
 from softkin import KinematicsError
 
 from tests.execution.limits import draw_inside, has_limits
+from tests.mechanisms.loci import coinciding as poses_where_singularities_coincide
 from tests.mechanisms.machines import Machine
 
 Reals = tuple[float, ...]
 Rows = tuple[Reals, ...]
 Bytes = tuple[int, ...]
+MANY, SOME = 700, 200
+"""A grid of more poses than MANY is thinned out to SOME: the package is tested on all of them."""
+COINCIDING = 40
 SAMPLES = 40
 """Random samples of one machine."""
 NO_TURN: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -64,8 +68,17 @@ def grid(machine: Machine) -> tuple[Sample, ...]:
         low, high = joint.domain or (-np.inf, np.inf)
         columns.append([v for v in (angles if joint.is_angle else sizes) if low <= v <= high])
     joints = np.array(list(product(*columns)))
+    if len(joints) > MANY:
+        joints = joints[rng.choice(len(joints), SOME, replace=False)]
     units = machine.closure.units
     return tuple(_sample(machine, axes, rng) for axes in machine.closure.axes(joints * units).tolist())
+
+
+def coinciding(machine: Machine) -> tuple[Sample, ...]:
+    """A few of the poses where several singularities coincide, or nearly."""
+    rng = np.random.default_rng(91)
+    axes = np.concatenate(list(poses_where_singularities_coincide(machine)))
+    return tuple(_sample(machine, row, rng) for row in axes[rng.choice(len(axes), COINCIDING)].tolist())
 
 
 def near(samples: Iterable[Sample]) -> Iterator[Sample]:
@@ -75,6 +88,14 @@ def near(samples: Iterable[Sample]) -> Iterator[Sample]:
         size = 10.0 ** rng.uniform(-13.0, -3.0)
         axes = np.array(sample.axes) + size * rng.uniform(-1.0, 1.0, len(sample.axes))
         yield replace(sample, axes=tuple(axes.tolist()))
+
+
+def one_wrong_byte(own: Bytes, branches: int, sample: Sample) -> Bytes:
+    """The configuration with some branch byte that means nothing."""
+    if not branches:
+        return own
+    wrong = sample.data[-1] % branches
+    return tuple(4 if i == wrong else byte for i, byte in enumerate(own))
 
 
 def _sample(machine: Machine, axes: list[float], rng: Generator) -> Sample:
@@ -121,6 +142,7 @@ def commands(machine: Machine, sample: Sample) -> Iterator[Command]:
         ((3,) * branches + opened, far),
         (others + opened, far),
         (sample.data, far),
+        (one_wrong_byte(own, branches, sample), far),
         (tuple(byte % 4 for byte in sample.data[:branches]) + sample.data[branches:], far),
     ):
         yield Command(position, rotation, configuration, reference)

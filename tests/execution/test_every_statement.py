@@ -21,10 +21,11 @@ from tests.execution import (
     test_singular_poses,
 )
 from tests.execution.comparisons import COMPARISONS
-from tests.execution.samples import Sample
+from tests.execution.samples import Sample, coinciding
 from tests.execution.statements import Statements
-from tests.execution.twins import Twins, twins_of
+from tests.execution.twins import Twins, twins_from, twins_of
 from tests.execution.units import compiled, compiled_shared, file_of, shared_texts, text_of
+from tests.mechanisms.machines import bare_machine
 from tests.st.library import Library
 
 MACHINES = ("plain", "equal", "limited", "limited to a turn")
@@ -40,6 +41,10 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
         for one in (one for one in twins if one.machine.label in MACHINES):
             for sample in (*few(one.regular, FEW), *(few(one.grid, FEW_OF_THE_GRID) if one.machine.label == "equal" else ())):
                 compare_all(one, sample)
+        if twins[0].machine.is_spatial and mechanism.branches:
+            for one in (*twins[:3], twins_from(bare_machine(mechanism))):
+                for sample in few(coinciding(one.machine), FEW_OF_THE_GRID):
+                    compare_all(one, sample)
     assert left_out(mechanism, statements) == []
 
 

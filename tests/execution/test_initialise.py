@@ -17,6 +17,7 @@ from tests.execution.closeness import asked
 from tests.execution.controller import NOT_INITIALIZED, OK, Controller
 from tests.execution.twins import MECHANISMS, Twins, twins_of
 from tests.execution.units import compiled, compiled_text, file_of, text_of
+from tests.mechanisms.machines import LENGTHS
 from tests.st.library import Library, StError
 
 NO_NUMBERS = (math.nan, math.inf, -math.inf, 1e300, -1e300)
@@ -34,6 +35,8 @@ def wrong_values(parameter: Parameter) -> Iterator[float]:
     yield math.nextafter(parameter.high, math.inf)
     if parameter.role is Role.LENGTH:
         yield from (0.0, -parameter.nominal)
+    if parameter.role is Role.SIGNED_LENGTH:
+        yield 0.0
 
 
 def test_every_parameter_is_checked(twins: tuple[Twins, ...]) -> None:
@@ -90,7 +93,7 @@ def test_the_coupling_is_given_once() -> None:
 
 def test_a_length_has_no_default(mechanism: Mechanism) -> None:
     """Without any input, a machine with lengths is refused."""
-    has_length = any(p.role is Role.LENGTH for p in mechanism.parameters)
+    has_length = any(p.role in LENGTHS for p in mechanism.parameters)
     controller = Controller(compiled(mechanism), mechanism)
     assert controller.block.call("Initialize") == (NOT_INITIALIZED if has_length else OK)
     assert controller.block.call("IsInitialized") is not has_length

@@ -6,17 +6,21 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 import pytest
 
 from tests.execution.comparisons import COMPARISONS
 from tests.execution.controller import OK
-from tests.execution.samples import NO_TURN, Sample, near
-from tests.execution.twins import Twins
+from tests.execution.samples import NO_TURN, Sample, coinciding, near
+from tests.execution.twins import Twins, twins_from
+from tests.mechanisms.machines import bare_machine
+from tests.mechanisms.test_offset import on_the_axis
 
 MACHINES = ("equal", "random 1")
 """With equal links every singular pose exists; with random offsets none of them is at a round number."""
 METHODS = ("AxesToCartesian", "CartesianToAxes", "AxesToOrientation", "IsSingularity", "Jacobian")
 OFFSET_METHODS = ("AxesToConfiguration_Offset", "CartesianToAxes_Offset")
+FEW = 12
 EVERY = 7
 """The share of the grid at which the slower comparisons are made."""
 
@@ -26,7 +30,7 @@ def test_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
     (one,) = (t for t in twins if t.machine.label == label)
     assert len(one.grid) >= 9
     for sample in one.grid if label == "equal" else one.grid[::3]:
-        for method in METHODS:
+        for method in offered(one, METHODS):
             COMPARISONS[method](one, sample)
 
 
@@ -34,7 +38,7 @@ def test_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
 def test_near_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
     (one,) = (t for t in twins if t.machine.label == label)
     for sample in near(one.grid[::EVERY]):
-        for method in METHODS:
+        for method in offered(one, METHODS):
             COMPARISONS[method](one, sample)
 
 
@@ -42,9 +46,23 @@ def test_near_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
 def test_a_point_off_the_flange_at_quarter_turns(twins: tuple[Twins, ...], label: str) -> None:
     (one,) = (t for t in twins if t.machine.label == label)
     for sample in (*one.grid[::EVERY], *near(one.grid[::EVERY])):
-        for method in OFFSET_METHODS:
-            if method.lower() in one.controller.block.routines:
+        for method in offered(one, OFFSET_METHODS):
+            COMPARISONS[method](one, sample)
+
+
+def test_singularities_that_coincide(twins: tuple[Twins, ...]) -> None:
+    """Wrist on axis 1, elbow stretched or folded, wrist straight: several at once, exactly and nearly."""
+    if not twins[1].machine.is_spatial or not twins[1].robot.BRANCHES:
+        return
+    for one in (twins[1], twins_from(bare_machine(twins[1].mechanism))):
+        for sample in coinciding(one.machine):
+            for method in ("AxesToCartesian", "CartesianToAxes"):
                 COMPARISONS[method](one, sample)
+
+
+def offered(one: Twins, methods: tuple[str, ...]) -> list[str]:
+    """Those that the block has."""
+    return [method for method in methods if method.lower() in one.controller.block.routines]
 
 
 def test_a_point_on_the_axis_of_a_link_cannot_be_aimed(twins: tuple[Twins, ...]) -> None:
@@ -61,15 +79,17 @@ def fixed_points(one: Twins, sample: Sample) -> Iterator[tuple[float, ...]]:
     """For every rotary axis, the point of the flange about which it turns the flange."""
     jacobian, rotation = one.robot.jacobian(sample.axes), one.robot.orientation(sample.axes)
     for index, joint in enumerate(one.mechanism.joints):
-        if joint.is_angle:
+        if joint.is_angle and not one.machine.is_spatial:
             arm = (-jacobian[1][index], jacobian[0][index], 0.0)
             yield tuple(sum(row[i] * v for row, v in zip(rotation, arm, strict=True)) for i in range(3))
+        elif joint.is_angle and one.mechanism.chain is not None:
+            yield tuple(on_the_axis(one.machine, np.array([sample.axes]), index)[0].tolist())
 
 
 def test_a_tie_goes_to_the_first_branch(twins: tuple[Twins, ...]) -> None:
     """A point straight ahead, and a reference that is as far from one solution as from its mirror image."""
     one = twins[0]
-    if not one.robot.BRANCHES:
+    if not one.robot.BRANCHES or one.machine.is_spatial:
         return
     count, size = len(one.mechanism.joints), len(one.robot.CONFIGURATION)
     point, nothing = (0.8 * one.machine.reach, 0.0, 0.0), (0.0,) * count
@@ -82,9 +102,41 @@ def test_a_tie_goes_to_the_first_branch(twins: tuple[Twins, ...]) -> None:
         assert solve(first, nothing) == solve(opened, nothing) != solve((2, *first[1:]), nothing)
 
 
+def test_where_branches_coincide_the_first_answers(twins: tuple[Twins, ...]) -> None:
+    """They are equally far from any reference."""
+    one = twins[1]
+    if not one.robot.BRANCHES:
+        return
+    periods = (0,) * len(one.robot.PERIOD_AXES)
+    samples = [s for s in singular_samples(one) if one.controller.forward(s.axes)[0] == OK and 3 in branches_of(one, s)]
+    compared = 0
+    for sample in samples[:: max(1, len(samples) // FEW)]:
+        written = branches_of(one, sample)
+        position, rotation, _ = one.controller.forward(sample.axes)[1]
+        first = tuple(1 if byte == 3 else byte for byte in written)
+        opened = one.controller.inverse(position, rotation, written + periods, sample.axes)
+        assert opened[0] == OK
+        if written.count(3) == 1:
+            assert opened == one.controller.inverse(position, rotation, first + periods, sample.axes)
+            compared += 1
+    assert compared
+
+
+def singular_samples(one: Twins) -> tuple[Sample, ...]:
+    """Right angles; of an arm in space, whose elbow stretches at any angle, what is singular by its description too."""
+    has_loci = one.machine.is_spatial and one.robot.BRANCHES > 0
+    return (*one.grid, *coinciding(one.machine)) if has_loci else one.grid
+
+
+def branches_of(one: Twins, sample: Sample) -> tuple[int, ...]:
+    """The branch bytes that forward kinematics writes."""
+    data: tuple[int, ...] = one.controller.forward(sample.axes)[1][2]
+    return data[: one.robot.BRANCHES]
+
+
 def test_the_grid_has_singular_poses(twins: tuple[Twins, ...]) -> None:
     """A mechanism with margins is singular somewhere on the grid, and not everywhere."""
     (equal,) = (t for t in twins if t.machine.label == "equal")
-    found = [equal.controller.is_singular(sample.axes) for sample in equal.grid]
+    found = [equal.controller.is_singular(sample.axes) for sample in singular_samples(equal)]
     assert any(found) == bool(equal.robot.MARGINS)
     assert not all(found)

@@ -59,10 +59,11 @@ class Twins:
 def twins_of(mechanism: Mechanism, order: str = "rows") -> tuple[Twins, ...]:
     """Every machine of a mechanism twice, with limits and without."""
     machines = (*machines_of(mechanism), *limited_machines(mechanism))
-    return tuple(_twins(one, order) for one in machines)
+    return tuple(twins_from(one, order) for one in machines)
 
 
-def _twins(one: Machine, order: str) -> Twins:
+def twins_from(one: Machine, order: str = "rows") -> Twins:
+    """One machine twice."""
     controller = Controller(compiled(one.mechanism, order), one.mechanism)
     assert controller.initialise(one.robot.parameters) == OK
     return Twins(one, controller)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import combinations, product
 
 import numpy as np
 import sympy as sp
@@ -13,6 +15,11 @@ from tests.mechanisms.machines import Machine
 
 OFTEN = 0.9
 """A quantity c + h cos(u - centre) is taken to vanish somewhere where |c| is less than this share of h."""
+
+
+SHIFTS = (0.0, 1e-12, -1e-9, 1e-6, -1e-4, 1e-3)
+"""How far (radians) singular joints are from their places, where several singularities coincide."""
+POSES = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +116,23 @@ def loci(machine: Machine) -> list[Locus]:
         chosen[number] = _first(machine, *quantities[number], taken)
     pairs = [(chosen[n], replace(chosen[n], second=True)) for n in sorted(chosen)]
     return [locus for pair in pairs for locus in (pair[:1] if pair[0].is_length else pair)]
+
+
+def coinciding(one: Machine) -> Iterator[Array]:
+    """Poses at every combination of places where branches meet, one place a branch, each by some shift."""
+    axes = one.draw(POSES, np.random.default_rng(3), farthest=150.0)
+    groups: dict[int, list[Locus]] = {}
+    for locus in loci(one):
+        groups.setdefault(locus.branch or 0, []).append(locus)
+    for count in range(1, len(groups) + 1):
+        for chosen in combinations(groups.values(), count):
+            for places in product(*chosen):
+                for shifts in product(SHIFTS, repeat=count) if count < 3 else [(s,) * count for s in SHIFTS]:
+                    there = axes
+                    for locus, shift in sorted(zip(places, shifts, strict=True), key=lambda pair: pair[0].joints):
+                        if locus.exists(there).any():
+                            there = locus.moved(there, shift)
+                    yield there
 
 
 def _first(machine: Machine, branch: int | None, quantity: sp.Expr, taken: set[int]) -> Locus:

@@ -174,6 +174,12 @@ def machines_of(mechanism: Mechanism) -> tuple[Machine, ...]:
     return tuple(machine(mechanism, label, given) for label, given in found.items())
 
 
+@cache
+def bare_machine(mechanism: Mechanism) -> Machine:
+    """Equal links and nothing else: folded it is nowhere, and all that can be free is free at once."""
+    return machine(mechanism, "bare", {p.name: 250.0 for p in mechanism.parameters if p.role in LENGTHS})
+
+
 def machine(mechanism: Mechanism, label: str, given: Mapping[str, float]) -> Machine:
     """One machine; what is not given has its default."""
     robot = softkin.catalogue()[mechanism.name](**given)

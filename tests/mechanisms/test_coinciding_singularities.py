@@ -6,9 +6,9 @@ pose of a grid of right angles: with dimensions of arms that are sold, and with 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cache
-from itertools import combinations, product
+from itertools import product
 
 import numpy as np
 import pytest
@@ -16,16 +16,13 @@ from softkin import Status
 
 from derive.mechanism import Mechanism
 from tests.mechanisms.closure import Array
-from tests.mechanisms.loci import Locus, loci
-from tests.mechanisms.machines import LENGTHS, MECHANISMS, Machine, machine, machines_of
+from tests.mechanisms.loci import Locus, coinciding, loci
+from tests.mechanisms.machines import MECHANISMS, Machine, bare_machine, machine, machines_of
 from tests.mechanisms.robots import ROBOTS
 from tests.mechanisms.self_motion import is_free
 from tests.mechanisms.test_boundary import alone
 
-SHIFTS = (0.0, 1e-12, -1e-9, 1e-6, -1e-4, 1e-3)
-"""How far (radians) each of the singular joints is from its place."""
 RIGHT_ANGLES = (-90.0, 0.0, 90.0, 180.0)
-POSES = 6
 REGULAR, NEAR = 1e-12, 1e-10
 WELL_REGULAR = 0.2
 CORNER = 2e-3
@@ -38,9 +35,8 @@ SPATIAL = tuple(m for m in MECHANISMS if machines_of(m)[0].is_spatial and m.bran
 
 def robots(mechanism: Mechanism) -> Mapping[str, Machine]:
     """Robots by their published dimensions; with equal links and nothing else; random ones."""
-    bare = {p.name: 250.0 for p in mechanism.parameters if p.role in LENGTHS}
     found = {name: machine(mechanism, name, given) for name, given in ROBOTS.get(mechanism.name, {}).items()}
-    return {**found, "bare": machine(mechanism, "bare", bare), "random": machines_of(mechanism)[-1]}
+    return {**found, "bare": bare_machine(mechanism), "random": machines_of(mechanism)[-1]}
 
 
 CASES = [(m, label) for m in SPATIAL for label in robots(m)]
@@ -63,23 +59,6 @@ def grid(one: Machine) -> Array:
     """Every combination of right angles: 4096 poses of six axes."""
     columns = [RIGHT_ANGLES if j.is_angle else (-one.reach / 2, 0.0, one.reach) for j in one.mechanism.joints]
     return np.array(list(product(*columns))) + one.closure.offsets
-
-
-def coinciding(one: Machine) -> Iterator[Array]:
-    """Poses at every combination of places where branches meet, one place a branch, each by some shift."""
-    axes = one.draw(POSES, np.random.default_rng(3), farthest=150.0)
-    groups: dict[int, list[Locus]] = {}
-    for locus in loci(one):
-        groups.setdefault(locus.branch or 0, []).append(locus)
-    for count in range(1, len(groups) + 1):
-        for chosen in combinations(groups.values(), count):
-            for places in product(*chosen):
-                for shifts in product(SHIFTS, repeat=count) if count < 3 else [(s,) * count for s in SHIFTS]:
-                    there = axes
-                    for locus, shift in sorted(zip(places, shifts, strict=True), key=lambda pair: pair[0].joints):
-                        if locus.exists(there).any():
-                            there = locus.moved(there, shift)
-                    yield there
 
 
 def folds(one: Machine) -> list[Locus]:

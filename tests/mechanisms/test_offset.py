@@ -138,7 +138,7 @@ def test_an_effective_link_that_is_too_short_cannot_be_aimed(machines: tuple[Mac
         first = next(machine.robot.parameters[p.name] for p in machine.mechanism.parameters if p.role is Role.LENGTH)
         values = machine.draw(1, np.random.default_rng(5))
         last = [i for i in _moving(machine) if machine.closure.angles[i]][-1]
-        fixed, away = _on_the_axis(machine, values, last)
+        fixed, away = on_the_axis(machine, values, last)
         for excess, expected in ((0.0, False), (0.3e-9 * first, False), (1e-6 * first, True), (1e-3 * first, True)):
             offset = fixed + excess * away
             point = points(machine, values, offset[None])[0]
@@ -152,7 +152,7 @@ def test_an_effective_link_that_is_too_short_cannot_be_aimed(machines: tuple[Mac
                 assert refusal(machine.robot.inverse_offset, point, offset, own, values[0]) is Status.UNREACHABLE
 
 
-def _on_the_axis(machine: Machine, values: Array, joint: int) -> tuple[Array, Array]:
+def on_the_axis(machine: Machine, values: Array, joint: int) -> tuple[Array, Array]:
     """The point of the flange next to its origin that the joint does not move, and a direction away from the axis."""
     turned = np.repeat(machine.closure.joints(values), 3, axis=0)
     turned[1:, joint] += (1.0, 3.5)

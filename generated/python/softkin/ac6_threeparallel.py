@@ -313,9 +313,9 @@ class Ac6ThreeParallel(Mechanism):
         """The constants of the machine."""
         if not (d1 >= -1e9 and d1 <= 1e9):
             raise self._refusal("d1: Height of axis A2 above the base", d1=d1)
-        if not (abs(a2) <= 1e9 and abs(a2) > 0.0):
+        if not (a2 >= -1e9 and a2 <= 1e9 and ((a2 > 0.0) or (a2 < 0.0))):
             raise self._refusal("a2: Upper arm, axis A2 to axis A3", a2=a2)
-        if not (abs(a3) <= 1e9 and abs(a3) > 0.0):
+        if not (a3 >= -1e9 and a3 <= 1e9 and ((a3 > 0.0) or (a3 < 0.0))):
             raise self._refusal("a3: Forearm, axis A3 to axis A4", a3=a3)
         if not (d4 >= -1e9 and d4 <= 1e9):
             raise self._refusal("d4: How far the wrist is beside the arm", d4=d4)
