@@ -17,6 +17,7 @@ from enum import Enum
 
 from derive.mechanism import Branch, Joint, Limited, Mechanism, Parameter
 from derive.program import Program, shared
+from derive.selftest_cases import SelfTest
 
 
 class Freedom(Enum):
@@ -109,6 +110,8 @@ class Kinematics:
     carried: Program | None = None
     total_image: Program | None = None
     evidence: Evidence | None = None
+    self_test: SelfTest | None = None
+    """Calls for a test on the controller; None until they are made."""
 
     @property
     def shared(self) -> tuple[Program, ...]:

@@ -16,6 +16,7 @@ from derive.emit.language import Language
 from derive.emit.st import StructuredTextFiles
 from derive.kinematics import Evidence, Kinematics
 from derive.mechanism import DescriptionError, Mechanism
+from derive.selftest import self_test
 from derive.solve import Unsolved
 from derive.verify import BrokenProgram
 from derive.witness import Disagreement, witness
@@ -59,7 +60,8 @@ def derive_one(mechanism: Mechanism) -> Built:
     start = time.perf_counter()
     kinematics = build(mechanism)
     evidence = witness(kinematics)
-    return Built(replace(kinematics, evidence=evidence), evidence, time.perf_counter() - start)
+    whole = replace(kinematics, evidence=evidence, self_test=self_test(kinematics))
+    return Built(whole, evidence, time.perf_counter() - start)
 
 
 def languages(profile: str | None = None) -> tuple[Language, ...]:

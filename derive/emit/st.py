@@ -20,6 +20,9 @@ from derive.emit.st_methods import methods_of
 from derive.emit.st_objects import Object, objects_of, ruled
 from derive.emit.st_overview import overview
 from derive.emit.st_reserved import refuse_clashes
+from derive.emit.st_selftest import FOLDER as SELF_TESTS
+from derive.emit.st_selftest import PROGRAM as SELF_TEST_PROGRAM
+from derive.emit.st_selftest import test_of
 from derive.emit.st_uses import needed
 from derive.kinematics import Kinematics
 from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, ROTATION, SOLVABLE, TIE
@@ -66,13 +69,27 @@ def _objects(
         yield f"{_SHARED}/{path.name.removesuffix('.st.j2')}", objects_of(text)
     for one in kinematics:
         yield f"{one.mechanism.family}/{one.mechanism.block_name}", objects_of(_unit(one, contract, templates))
+    yield from _self_tests(kinematics, contract, templates)
+
+
+def _self_tests(
+    kinematics: Sequence[Kinematics], contract: Contract, templates: Environment
+) -> Iterator[tuple[str, tuple[Object, ...]]]:
+    """A self-test for every block that has vectors, and the program that runs all of them."""
+    found = [test for one in kinematics if (test := test_of(one, block_of(one, contract))) is not None]
+    for test in found:
+        text = templates.get_template("selftest.st.j2").render(contract.spelling, test=test)
+        yield f"{SELF_TESTS}/{test.name}", objects_of(text)
+    if found:
+        text = templates.get_template("program_selftest.st.j2").render(contract.spelling, tests=found)
+        yield f"{SELF_TESTS}/{SELF_TEST_PROGRAM}", objects_of(text)
 
 
 def _documents(objects: Mapping[str, Sequence[Object]]) -> Iterator[tuple[str, str]]:
     """PLCopenXML: one file with everything, and one for every mechanism with what it needs."""
     yield "softkin", plcopen.document("Softkin", GENERATED, _by_folder(objects))
     for path in objects:
-        if not path.startswith(f"{_SHARED}/"):
+        if not path.startswith((f"{_SHARED}/", f"{SELF_TESTS}/")):
             chosen = {p: objects[p] for p in needed(path, objects)}
             yield path, plcopen.document("Softkin", GENERATED, _by_folder(chosen))
 

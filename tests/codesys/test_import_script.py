@@ -58,7 +58,7 @@ def test_a_library_with_every_object(imported: tuple[Project, str]) -> None:
 
 
 def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:
-    kinds = {"FunctionBlock": "FUNCTION_BLOCK", "Function": "FUNCTION", "Enumeration": "TYPE", "Get": "GET"}
+    kinds = {"FunctionBlock": "FUNCTION_BLOCK", "Function": "FUNCTION", "Enumeration": "TYPE", "Get": "GET", "Program": "PROGRAM"}
     found = {}
     for node in nodes:
         if isinstance(node, Dut):

@@ -12,6 +12,8 @@ from tests.st.library import Library, compile_st
 FOLDER = Path(__file__).resolve().parents[2] / "generated" / "st"
 SHARED = "softkin"
 """The folder of the objects that all units share."""
+NO_UNITS = (SHARED, "selftest")
+"""The folders whose objects are no kinematics."""
 
 
 @cache
@@ -22,7 +24,7 @@ def shared_texts() -> Mapping[str, str]:
 
 def unit_paths() -> list[Path]:
     """The files of all units."""
-    return [path for path in sorted(FOLDER.glob("*/*.st")) if path.parent.name != SHARED]
+    return [path for path in sorted(FOLDER.glob("*/*.st")) if path.parent.name not in NO_UNITS]
 
 
 def file_of(mechanism: Mechanism) -> str:
