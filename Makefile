@@ -7,7 +7,9 @@ PROFILE ?=
 OPTIONS := $(if $(PROFILE),--profile $(PROFILE))
 READY := $(ENVIRONMENT)/ready
 
-.PHONY: generate check test
+BENCH := .venv-bench
+
+.PHONY: generate check test bench
 
 generate: $(READY)
 	$(RUN) -m derive generate $(OPTIONS)
@@ -17,6 +19,14 @@ check: $(READY)
 
 test: $(READY)
 	$(RUN) -m pytest -n 2
+
+bench: $(BENCH)/ready
+	PYTHONPATH=generated/python $(BENCH)/bin/python -m bench
+
+$(BENCH)/ready: bench/requirements.txt
+	$(PYTHON) -m venv $(BENCH)
+	$(BENCH)/bin/python -m pip install --quiet --requirement bench/requirements.txt
+	touch $@
 
 $(READY): pyproject.toml
 	$(PYTHON) -c 'import sys; sys.exit("Softkin needs Python 3.11 or newer" if sys.version_info < (3, 11) else 0)'

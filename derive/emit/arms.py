@@ -14,13 +14,13 @@ a statement may move to where it is needed.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from derive.program import Let, Select, Statement, expressions, symbols_of
+from derive.program import Let, Select, Statement, expressions, reads, symbols_of
 
 _BOTH = (sp.true, sp.false)
 
@@ -54,6 +54,43 @@ Item = Statement | Arms
 
 def in_arms(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
     """The statements of a program, choices that share a condition gathered with what they alone need."""
+    return _sunk(_in_arms(body, wanted), {s for value in wanted for s in _symbols(value)})
+
+
+def _sunk(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:
+    """What is read on the second sides of several choices only, the singular ones, is bound on each of them."""
+    found: list[Item] = []
+    needed = set(later)
+    for item in reversed(items):
+        if isinstance(item, Let) and item.name not in needed and any(isinstance(i, Arms) for i in found):
+            found = [_with(i, item) if isinstance(i, Arms) else i for i in found]
+            continue
+        needed |= _reads_always(item)
+        found.insert(0, item)
+    return tuple(found)
+
+
+def _reads_always(item: Item) -> set[sp.Symbol]:
+    """What a statement reads, or a choice to decide and on its first side."""
+    if isinstance(item, Arms):
+        return set(_symbols(item.condition)).union(*map(_reads_somewhere, item.holds))
+    return {s for value in expressions(item) for s in _symbols(value)} | set(reads(item))
+
+
+def _with(arms: Arms, let: Let) -> Arms:
+    """The choice with a statement in front of its second side, if that reads it."""
+    if not any(let.name in _reads_somewhere(item) for item in arms.fails):
+        return arms
+    return replace(arms, fails=(let, *arms.fails), flat=(let, *arms.flat))
+
+
+def _reads_somewhere(item: Item) -> set[sp.Symbol]:
+    if isinstance(item, Arms):
+        return _reads_always(item).union(*(_reads_somewhere(inner) for inner in (*item.holds, *item.fails)))
+    return _reads_always(item)
+
+
+def _in_arms(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
     later = frozenset(s for value in wanted for s in _symbols(value))
     found: list[Item] = []
     stretch: list[Let] = []
@@ -68,13 +105,14 @@ def in_arms(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Item
 
 
 def _gathered(lets: Sequence[Let], later: frozenset[sp.Symbol]) -> list[Item]:
-    """A stretch without conditions: `later` is what is read behind it. The choice that gathers most is the outermost."""
+    """A stretch without conditions: `later` is what is read behind it. First the first choice that is in no other."""
     stretch = _Stretch(lets, later)
     conditions = dict.fromkeys(let.value.args[0] for let in lets if isinstance(let.value, Select))
     worthwhile = [c for c in (_Choice(condition, stretch) for condition in conditions) if c.is_worthwhile]
     if not worthwhile:
         return list(lets)
-    return max(worthwhile, key=lambda c: len(c.inside)).items()
+    outermost = [c for c in worthwhile if not any(c.gathered < other.gathered for other in worthwhile)]
+    return min(outermost, key=lambda c: min(c.members)).items()
 
 
 class _Stretch:
@@ -131,6 +169,11 @@ class _Choice:
         """Whether more than one choice, or more than a choice, is gathered."""
         return len(self.members) > 1 or len(self.members) + len(self.inside) > 2
 
+    @property
+    def gathered(self) -> set[int]:
+        """All of them."""
+        return self.members | set(self.inside)
+
     def value(self, place: int, side: int) -> sp.Expr:
         """What a statement binds on a side."""
         return self.sides[side].get(place, self.stretch.lets[place].value)
@@ -180,7 +223,7 @@ class _Choice:
 
     def _misplaced(self) -> int | None:
         """A member that needs something outside which needs a member: the two cannot be gathered."""
-        gathered = self.members | set(self.inside)
+        gathered = self.gathered
         behind = self.stretch.downstream(self.members) - gathered
         torn = [place for place in sorted(gathered) if behind & set(self.stretch.sources[place])]
         if not torn:
@@ -190,7 +233,7 @@ class _Choice:
     def items(self) -> list[Item]:
         """The stretch with the choice in it, and what is left gathered in turn."""
         lets, later = self.stretch.lets, self.stretch.later
-        gathered = self.members | set(self.inside)
+        gathered = self.gathered
         needed_outside = {s for place, let in enumerate(lets) if place not in gathered for s in _symbols(let.value)}
         results = tuple(lets[place].name for place in sorted(self.members) if lets[place].name in later | needed_outside)
         flat = tuple(lets[place] for place in sorted(gathered))

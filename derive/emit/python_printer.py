@@ -58,9 +58,12 @@ class ScalarPrinter(ExpressionPrinter):
     Of an angle, zeros lose their signs by adding 0.
     """
 
-    def __init__(self, *, modulo_turns: bool = False) -> None:
-        """modulo_turns: whether -180 degrees are as good as 180, so that the sign of a zero sine does not matter."""
-        self.modulo_turns = modulo_turns
+    def __init__(self, *, modulo_turns: bool = False, is_trusted: bool = False) -> None:
+        """modulo_turns: whether -180 degrees are as good as 180, so that the sign of a zero sine does not matter.
+
+        is_trusted: whether there is a direction at all, so that not both are zero.
+        """
+        self.modulo_turns, self.is_trusted = modulo_turns, is_trusted
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
         if isinstance(node, Root):
@@ -84,7 +87,7 @@ class ScalarPrinter(ExpressionPrinter):
             return f"({first} if {condition} else {second})"
         if key == "atan2":
             sine, cosine = arguments
-            return f"arctan2({sine}{'' if self.modulo_turns else ' + 0.0'}, {cosine} + 0.0)"
+            return f"arctan2({sine}{'' if self.modulo_turns else ' + 0.0'}, {cosine}{'' if self.is_trusted else ' + 0.0'})"
         return f"{key}({', '.join(arguments)})"
 
     def logic(self, word: str) -> str:

@@ -16,7 +16,7 @@ from derive.program import Program, Status, real
 from derive.unroll import REFUSAL, Sign, choices, is_straight, principal, specialised, suffixed, unroll, with_limits
 
 _ARRAY = ArrayPrinter()
-_SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True)
+_SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, is_trusted=True)
 _FRAME = Argument("frame", "Frame", (POSITION, ROTATION))
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from functools import cache
 from itertools import product
 from math import floor
+from typing import TypeAlias
 
 from softkin._types import Configuration, KinematicsError, Reals, Status
 
@@ -16,12 +17,18 @@ COINCIDENT = 1e-11
 """Branches coincide where their margin is at most this in size."""
 EDGE = 1e-9
 """How far (degrees) the intervals of the periods are shifted down, so that rounding does not cross an edge."""
+FIRST_TURN, SECOND_TURN = -180.0 - EDGE, 180.0 - EDGE
+"""Where the turn of number 1 begins, and the next one (degrees)."""
 TIE = 1e-6
 """An automatic choice takes a later slot only where its squared distance is smaller by more than this."""
 
 
+Slot: TypeAlias = tuple[Configuration, Reals]
+"""The branch bytes of a slot, and the signs that they stand for."""
+
+
 @cache
-def slots(branch_bytes: Configuration) -> tuple[tuple[Configuration, Reals], ...]:
+def slots(branch_bytes: Configuration) -> tuple[Slot, ...]:
     """The slots that branch bytes leave open, by bytes and by signs: byte 1 of the first branch varies fastest."""
     for byte in branch_bytes:
         if byte not in (AUTOMATIC, FIRST, SECOND, COINCIDE):

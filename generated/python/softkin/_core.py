@@ -9,7 +9,17 @@ from math import nan
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias
 
-from softkin._configuration import AUTOMATIC, TIE, branch_byte, period, slots, squared_distance
+from softkin._configuration import (
+    AUTOMATIC,
+    FIRST_TURN,
+    SECOND_TURN,
+    TIE,
+    Slot,
+    branch_byte,
+    period,
+    slots,
+    squared_distance,
+)
 from softkin._input import bytes_of, parameter_value, position_of, reals, rotation_of, unusable
 from softkin._solutions import Solutions
 from softkin._types import (
@@ -172,7 +182,8 @@ class Mechanism(ABC):
         limits included. Raises BAD_INPUT only for what has not the form of a frame. The result is as a tuple of them.
         """
         position, rows = self._pose(frame)
-        return Solutions(self._every_branch(position, rows, self._near(reference)), self._solution)
+        found = self._every_branch(position, rows, self._near(reference))
+        return Solutions(found, slots((AUTOMATIC,) * self.BRANCHES), self._solution)
 
     def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None where it does not reach.
@@ -269,9 +280,9 @@ class Mechanism(ABC):
         axes = self._branch(*frame, signs, (0.0,) * len(self.PERIOD_AXES), reference)
         return None if isinstance(axes, Status) else axes
 
-    def _solution(self, slot: int, found: Reals | float) -> Solution:
+    def _solution(self, slot: Slot, found: Reals | float) -> Solution:
         """A slot with its configuration."""
-        branches, _ = slots((AUTOMATIC,) * self.BRANCHES)[slot]
+        branches, _ = slot
         if isinstance(found, tuple):
             return Solution(self._joined(branches, self._periods(found)), found, Status.OK)
         return Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, _STATUSES[int(found)])
@@ -310,7 +321,7 @@ class Mechanism(ABC):
         return tuple(map(branch_byte, measures)) + self._periods(axes)
 
     def _periods(self, axes: Reals) -> Configuration:
-        return tuple([period(axes[i]) for i in self.PERIOD_AXES])
+        return tuple([1 if FIRST_TURN <= axes[i] < SECOND_TURN else period(axes[i]) for i in self.PERIOD_AXES])
 
     def _choose(self, program: _OneBranch, branches: Configuration, near: Reals) -> Reals | Status:
         """The axes on the slot that the branch bytes name, or on the nearest of those that they leave open."""

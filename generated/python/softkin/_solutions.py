@@ -6,19 +6,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import TypeAlias, overload
 
+from softkin._configuration import Slot
 from softkin._types import Reals, Solution
 
-_Make: TypeAlias = Callable[[int, Reals | float], Solution]
+_Make: TypeAlias = Callable[[Slot, Reals | float], Solution]
 
 
 class Solutions(Sequence[Solution]):
     """A sequence that equals the tuple of its solutions, prints like it, and never changes."""
 
-    __slots__ = ("_found", "_make")
+    __slots__ = ("_found", "_make", "_slots")
 
-    def __init__(self, found: tuple[Reals | float, ...], make: _Make) -> None:
+    def __init__(self, found: tuple[Reals | float, ...], slots: tuple[Slot, ...], make: _Make) -> None:
         """found: of every slot the axes, or the number of its status; make: the solution of a slot."""
-        self._found, self._make = found, make
+        self._found, self._slots, self._make = found, slots, make
 
     def __len__(self) -> int:
         """How many slots there are."""
@@ -34,12 +35,11 @@ class Solutions(Sequence[Solution]):
         """A slot, or a tuple of some."""
         if isinstance(index, slice):
             return tuple(self)[index]
-        slot = range(len(self._found))[index]
-        return self._make(slot, self._found[slot])
+        return self._make(self._slots[index], self._found[index])
 
     def __iter__(self) -> Iterator[Solution]:
         """The slots in order."""
-        return map(self._make, range(len(self._found)), self._found)
+        return map(self._make, self._slots, self._found)
 
     def __eq__(self, other: object) -> bool:
         """Whether the other is a tuple of the same solutions, or such a sequence."""

@@ -504,7 +504,6 @@ class SCCC(OffsetKinematics, TwistChoice):
         # out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
         if reach > 1e-11*machine_scale:
@@ -520,6 +519,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             cos_a1 = along_a1/length_a1  # its reference where it is free
             sin_a1 = across_a1/length_a1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_a1 = cos(free_a1)  # its reference where it is free
             sin_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
@@ -528,10 +528,11 @@ class SCCC(OffsetKinematics, TwistChoice):
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
         if abs(turn_a2) > 0.0:
             near_a2 = 360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
             # A2: where its turn is open
             open_a2 = mid_a2 if single_a2 > 0.0 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
@@ -543,6 +544,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         if abs(turn_a3) > 0.0:
             near_a3 = 360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             if single_a3 > 0.0:
                 open_a3 = mid_a3  # A3: where its turn is open
             else:

@@ -547,13 +547,17 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d4/divisor_q1
-        sin_swing_q1_left = -root(sine_square_q1)
         if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_swing_q1 = -d4/divisor_q1
+            sin_swing_q1_left = -root(sine_square_q1)
             cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
             sin_q1_left = (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1
+            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
+            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_swing_q1 = -d4/divisor_q1
+            sin_swing_q1_left = -root(sine_square_q1)
             # its reference where it is free
             cos_q1_left = select(
                 distance_q1 > 1e-11*machine_scale,
@@ -565,16 +569,28 @@ class ArrayPrograms(Programs):
                 (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1,
                 sin(free_a1),
             )
+            # its reference where it is free
+            cos_q1_right = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1_right = select(
+                distance_q1 > 1e-11*machine_scale,
+                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1,
+                sin(free_a1),
+            )
         r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
         r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
         # q6: direction and distance of a point
         radius_q6_left = root(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
-        free_a6 = (ref_a6 - offset_a6)*DEGREE
         if everywhere(radius_q6_left > 1e-11):
-            length_q6_left = radius_q6_left
-            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/length_q6_left  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/length_q6_left
+            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
+            cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down
         else:
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
             length_q6_left = select(radius_q6_left > 1e-11, radius_q6_left, 1.0)
             # its reference where it is free
             cos_q6_before_q6_of_q3_left_down = select(
@@ -585,6 +601,13 @@ class ArrayPrograms(Programs):
             sin_q6_before_q6_of_q3_left_down = select(
                 radius_q6_left > 1e-11,
                 r22_from_q1_left/length_q6_left,
+                sin(free_a6),
+            )
+            # its reference where it is free
+            cos_q6_before_q6_of_q3_left_up = select(radius_q6_left > 1e-11, r21_from_q1_left/length_q6_left, cos(free_a6))
+            sin_q6_before_q6_of_q3_left_up = select(
+                radius_q6_left > 1e-11,
+                -r22_from_q1_left/length_q6_left,
                 sin(free_a6),
             )
         r23_from_q1_left = r23*cos_q1_left - r13*sin_q1_left
@@ -709,30 +732,127 @@ class ArrayPrograms(Programs):
             sin_q6_left_down = select(
                 stays_q6_of_q3_left_down > 0.0, sin_q6_before_q6_of_q3_left_down, sin_q6_after_q6_of_q3_left_down,
             )
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
-        else:
-            # its reference where it is free
-            cos_q1_right = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1,
-                cos(free_a1),
+        r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
+        r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
+        # what the unknown links must span
+        wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
+        r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
+        # what the unknown links must span
+        wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
+        reach_left_down = root(
+            wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
+        )
+        # kept as a product
+        sine_square_q3_left_down = (
+            (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
+            *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
+        )
+        cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
+        sin_q3_left_up_down = root(sine_square_q3_left_down)
+        if everywhere(reach_left_down > 1e-11*machine_scale):
+            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
+            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_up_down = (
+                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
             )
-            sin_q1_right = select(
-                distance_q1 > 1e-11*machine_scale,
-                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1,
-                sin(free_a1),
+            across_q2_left_up_down = (
+                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
+            )
+            length_q2_left_up_down = select(
+                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0,
+                root(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down),
+                1.0,
+            )
+            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
+            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_down_down = (
+                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
+            )
+            across_q2_left_down_down = (
+                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
+            )
+            length_q2_left_down_down = select(
+                (
+                    across_q2_left_down_down*across_q2_left_down_down
+                    + along_q2_left_down_down*along_q2_left_down_down > 0.0
+                ),
+                root(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down),
+                1.0,
+            )
+            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
+            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
+            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_up_down = (
+                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
+            )
+            across_q2_left_up_down = (
+                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
+            )
+            length_q2_left_up_down = select(
+                (
+                    (reach_left_down > 1e-11*machine_scale)
+                    & (across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0)
+                ),
+                root(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_left_up_down = select(
+                reach_left_down > 1e-11*machine_scale,
+                along_q2_left_up_down/length_q2_left_up_down,
+                cos(free_a2),
+            )
+            sin_q2_left_up_down = select(
+                reach_left_down > 1e-11*machine_scale,
+                across_q2_left_up_down/length_q2_left_up_down,
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_down_down = (
+                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
+            )
+            across_q2_left_down_down = (
+                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
+            )
+            length_q2_left_down_down = select(
+                (
+                    (reach_left_down > 1e-11*machine_scale)
+                    & (
+                        across_q2_left_down_down*across_q2_left_down_down
+                        + along_q2_left_down_down*along_q2_left_down_down > 0.0
+                    )
+                ),
+                root(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_left_down_down = select(
+                reach_left_down > 1e-11*machine_scale,
+                along_q2_left_down_down/length_q2_left_down_down,
+                cos(free_a2),
+            )
+            sin_q2_left_down_down = select(
+                reach_left_down > 1e-11*machine_scale,
+                across_q2_left_down_down/length_q2_left_down_down,
+                sin(free_a2),
             )
         r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
         r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
         # q6: direction and distance of a point
         radius_q6_right = root(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
         if everywhere(radius_q6_right > 1e-11):
-            length_q6_right = radius_q6_right
-            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/length_q6_right  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/length_q6_right
+            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
+            cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down
         else:
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
             length_q6_right = select(radius_q6_right > 1e-11, radius_q6_right, 1.0)
             # its reference where it is free
             cos_q6_before_q6_of_q3_right_down = select(
@@ -743,6 +863,17 @@ class ArrayPrograms(Programs):
             sin_q6_before_q6_of_q3_right_down = select(
                 radius_q6_right > 1e-11,
                 r22_from_q1_right/length_q6_right,
+                sin(free_a6),
+            )
+            # its reference where it is free
+            cos_q6_before_q6_of_q3_right_up = select(
+                radius_q6_right > 1e-11,
+                r21_from_q1_right/length_q6_right,
+                cos(free_a6),
+            )
+            sin_q6_before_q6_of_q3_right_up = select(
+                radius_q6_right > 1e-11,
+                -r22_from_q1_right/length_q6_right,
                 sin(free_a6),
             )
         r23_from_q1_right = r23*cos_q1_right - r13*sin_q1_right
@@ -864,16 +995,135 @@ class ArrayPrograms(Programs):
             sin_q6_right_down = select(
                 stays_q6_of_q3_right_down > 0.0, sin_q6_before_q6_of_q3_right_down, sin_q6_after_q6_of_q3_right_down,
             )
-        if everywhere(radius_q6_left > 1e-11):
-            cos_q6_before_q6_of_q3_left_up = r21_from_q1_left/length_q6_left  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left/length_q6_left
+        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
+        r21_from_q1_before_q56_right_down = -r21_from_q1_before_q6_right_down*r23_from_q1_right - r33*radius_q6_right
+        # what the unknown links must span
+        wrist_x_from_q1_right_down = (
+            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
+        )
+        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
+        # what the unknown links must span
+        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
+        reach_right_down = root(
+            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
+            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
+        )
+        # kept as a product
+        sine_square_q3_right_down = (
+            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
+            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
+        )
+        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
+        sin_q3_right_up_down = root(sine_square_q3_right_down)
+        if everywhere(reach_right_down > 1e-11*machine_scale):
+            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
+            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_up_down = (
+                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+                + arm_along_q2_right_down*wrist_x_from_q1_right_down
+            )
+            across_q2_right_up_down = (
+                arm_along_q2_right_down*wrist_y_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+            )
+            length_q2_right_up_down = select(
+                (across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down > 0.0),
+                root(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down),
+                1.0,
+            )
+            cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
+            sin_q2_right_up_down = across_q2_right_up_down/length_q2_right_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_down_down = (
+                arm_along_q2_right_down*wrist_x_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+            )
+            across_q2_right_down_down = (
+                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+                + arm_along_q2_right_down*wrist_y_from_q1_right_down
+            )
+            length_q2_right_down_down = select(
+                (
+                    across_q2_right_down_down*across_q2_right_down_down
+                    + along_q2_right_down_down*along_q2_right_down_down > 0.0
+                ),
+                root(
+                    across_q2_right_down_down*across_q2_right_down_down
+                    + along_q2_right_down_down*along_q2_right_down_down
+                ),
+                1.0,
+            )
+            cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
+            sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
+            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_up_down = (
+                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+                + arm_along_q2_right_down*wrist_x_from_q1_right_down
+            )
+            across_q2_right_up_down = (
+                arm_along_q2_right_down*wrist_y_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+            )
+            length_q2_right_up_down = select(
+                (
+                    (reach_right_down > 1e-11*machine_scale)
+                    & (
+                        across_q2_right_up_down*across_q2_right_up_down
+                        + along_q2_right_up_down*along_q2_right_up_down > 0.0
+                    )
+                ),
+                root(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down),
+                1.0,
+            )
             # its reference where it is free
-            cos_q6_before_q6_of_q3_left_up = select(radius_q6_left > 1e-11, r21_from_q1_left/length_q6_left, cos(free_a6))
-            sin_q6_before_q6_of_q3_left_up = select(
-                radius_q6_left > 1e-11,
-                -r22_from_q1_left/length_q6_left,
-                sin(free_a6),
+            cos_q2_right_up_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                along_q2_right_up_down/length_q2_right_up_down,
+                cos(free_a2),
+            )
+            sin_q2_right_up_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                across_q2_right_up_down/length_q2_right_up_down,
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_down_down = (
+                arm_along_q2_right_down*wrist_x_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+            )
+            across_q2_right_down_down = (
+                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+                + arm_along_q2_right_down*wrist_y_from_q1_right_down
+            )
+            length_q2_right_down_down = select(
+                (
+                    (reach_right_down > 1e-11*machine_scale)
+                    & (
+                        across_q2_right_down_down*across_q2_right_down_down
+                        + along_q2_right_down_down*along_q2_right_down_down > 0.0
+                    )
+                ),
+                root(
+                    across_q2_right_down_down*across_q2_right_down_down
+                    + along_q2_right_down_down*along_q2_right_down_down
+                ),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_right_down_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                along_q2_right_down_down/length_q2_right_down_down,
+                cos(free_a2),
+            )
+            sin_q2_right_down_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                across_q2_right_down_down/length_q2_right_down_down,
+                sin(free_a2),
             )
         wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
         wrist_x_from_q1_here_left_up = (
@@ -985,20 +1235,108 @@ class ArrayPrograms(Programs):
             sin_q6_left_up = select(
                 stays_q6_of_q3_left_up > 0.0, sin_q6_before_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up,
             )
-        if everywhere(radius_q6_right > 1e-11):
-            cos_q6_before_q6_of_q3_right_up = r21_from_q1_right/length_q6_right  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right/length_q6_right
-        else:
-            # its reference where it is free
-            cos_q6_before_q6_of_q3_right_up = select(
-                radius_q6_right > 1e-11,
-                r21_from_q1_right/length_q6_right,
-                cos(free_a6),
+        r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
+        r21_from_q1_before_q56_left_up = r33*radius_q6_left - r21_from_q1_before_q6_left_up*r23_from_q1_left
+        # what the unknown links must span
+        wrist_x_from_q1_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_up
+        r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
+        wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
+        reach_left_up = root(
+            wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
+        )
+        # kept as a product
+        sine_square_q3_left_up = (
+            (a3 + reach_left_up - a2)*(a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)*(a2 + reach_left_up - a3)
+            /(scale_q3*scale_q3)
+        )
+        cos_q3_left_up = (reach_left_up*reach_left_up - a2*a2 - a3*a3)/scale_q3
+        sin_q3_left_up_up = root(sine_square_q3_left_up)
+        if everywhere(reach_left_up > 1e-11*machine_scale):
+            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
+            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_up_up = (
+                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
             )
-            sin_q6_before_q6_of_q3_right_up = select(
-                radius_q6_right > 1e-11,
-                -r22_from_q1_right/length_q6_right,
-                sin(free_a6),
+            across_q2_left_up_up = (
+                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
+            )
+            length_q2_left_up_up = select(
+                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0,
+                root(across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up),
+                1.0,
+            )
+            cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
+            sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_down_up = (
+                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
+            )
+            across_q2_left_down_up = (
+                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
+            )
+            length_q2_left_down_up = select(
+                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0,
+                root(across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up),
+                1.0,
+            )
+            cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
+            sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
+            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_up_up = (
+                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
+            )
+            across_q2_left_up_up = (
+                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
+            )
+            length_q2_left_up_up = select(
+                (
+                    (reach_left_up > 1e-11*machine_scale)
+                    & (across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0)
+                ),
+                root(across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_left_up_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                along_q2_left_up_up/length_q2_left_up_up,
+                cos(free_a2),
+            )
+            sin_q2_left_up_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                across_q2_left_up_up/length_q2_left_up_up,
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_down_up = (
+                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
+            )
+            across_q2_left_down_up = (
+                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
+            )
+            length_q2_left_down_up = select(
+                (
+                    (reach_left_up > 1e-11*machine_scale)
+                    & (across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0)
+                ),
+                root(across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up),
+                1.0,
+            )
+            # its reference where it is free
+            cos_q2_left_down_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                along_q2_left_down_up/length_q2_left_down_up,
+                cos(free_a2),
+            )
+            sin_q2_left_down_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                across_q2_left_down_up/length_q2_left_down_up,
+                sin(free_a2),
             )
         wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
         wrist_x_from_q1_here_right_up = (
@@ -1112,347 +1450,6 @@ class ArrayPrograms(Programs):
             sin_q6_right_up = select(
                 stays_q6_of_q3_right_up > 0.0, sin_q6_before_q6_of_q3_right_up, sin_q6_after_q6_of_q3_right_up,
             )
-        r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
-        r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
-        # what the unknown links must span
-        wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
-        r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
-        # what the unknown links must span
-        wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
-        reach_left_down = root(
-            wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
-        )
-        # kept as a product
-        sine_square_q3_left_down = (
-            (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
-            *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
-        )
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
-        sin_q3_left_up_down = root(sine_square_q3_left_down)
-        if everywhere(reach_left_down > 1e-11*machine_scale):
-            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_down = (
-                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
-            )
-            across_q2_left_up_down = (
-                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
-            )
-            length_q2_left_up_down = select(
-                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0,
-                root(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down),
-                1.0,
-            )
-            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
-            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_down = (
-                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
-            )
-            across_q2_left_down_down = (
-                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
-            )
-            length_q2_left_down_down = select(
-                (
-                    across_q2_left_down_down*across_q2_left_down_down
-                    + along_q2_left_down_down*along_q2_left_down_down > 0.0
-                ),
-                root(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down),
-                1.0,
-            )
-            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
-            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
-        else:
-            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_down = (
-                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
-            )
-            across_q2_left_up_down = (
-                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
-            )
-            length_q2_left_up_down = select(
-                (
-                    (reach_left_down > 1e-11*machine_scale)
-                    & (across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0)
-                ),
-                root(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_up_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                along_q2_left_up_down/length_q2_left_up_down,
-                cos(free_a2),
-            )
-            sin_q2_left_up_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                across_q2_left_up_down/length_q2_left_up_down,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_down = (
-                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
-            )
-            across_q2_left_down_down = (
-                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
-            )
-            length_q2_left_down_down = select(
-                (
-                    (reach_left_down > 1e-11*machine_scale)
-                    & (
-                        across_q2_left_down_down*across_q2_left_down_down
-                        + along_q2_left_down_down*along_q2_left_down_down > 0.0
-                    )
-                ),
-                root(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_down_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                along_q2_left_down_down/length_q2_left_down_down,
-                cos(free_a2),
-            )
-            sin_q2_left_down_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                across_q2_left_down_down/length_q2_left_down_down,
-                sin(free_a2),
-            )
-        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
-        r21_from_q1_before_q56_right_down = -r21_from_q1_before_q6_right_down*r23_from_q1_right - r33*radius_q6_right
-        # what the unknown links must span
-        wrist_x_from_q1_right_down = (
-            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
-        )
-        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
-        # what the unknown links must span
-        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
-        reach_right_down = root(
-            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
-            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
-        )
-        # kept as a product
-        sine_square_q3_right_down = (
-            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
-            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
-        )
-        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
-        sin_q3_right_up_down = root(sine_square_q3_right_down)
-        if everywhere(reach_right_down > 1e-11*machine_scale):
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_down = (
-                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                + arm_along_q2_right_down*wrist_x_from_q1_right_down
-            )
-            across_q2_right_up_down = (
-                arm_along_q2_right_down*wrist_y_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            )
-            length_q2_right_up_down = select(
-                (across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down > 0.0),
-                root(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down),
-                1.0,
-            )
-            cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
-            sin_q2_right_up_down = across_q2_right_up_down/length_q2_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_down = (
-                arm_along_q2_right_down*wrist_x_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            )
-            across_q2_right_down_down = (
-                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                + arm_along_q2_right_down*wrist_y_from_q1_right_down
-            )
-            length_q2_right_down_down = select(
-                (
-                    across_q2_right_down_down*across_q2_right_down_down
-                    + along_q2_right_down_down*along_q2_right_down_down > 0.0
-                ),
-                root(
-                    across_q2_right_down_down*across_q2_right_down_down
-                    + along_q2_right_down_down*along_q2_right_down_down
-                ),
-                1.0,
-            )
-            cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
-            sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
-        else:
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_down = (
-                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                + arm_along_q2_right_down*wrist_x_from_q1_right_down
-            )
-            across_q2_right_up_down = (
-                arm_along_q2_right_down*wrist_y_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            )
-            length_q2_right_up_down = select(
-                (
-                    (reach_right_down > 1e-11*machine_scale)
-                    & (
-                        across_q2_right_up_down*across_q2_right_up_down
-                        + along_q2_right_up_down*along_q2_right_up_down > 0.0
-                    )
-                ),
-                root(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_right_up_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                along_q2_right_up_down/length_q2_right_up_down,
-                cos(free_a2),
-            )
-            sin_q2_right_up_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                across_q2_right_up_down/length_q2_right_up_down,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_down = (
-                arm_along_q2_right_down*wrist_x_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            )
-            across_q2_right_down_down = (
-                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                + arm_along_q2_right_down*wrist_y_from_q1_right_down
-            )
-            length_q2_right_down_down = select(
-                (
-                    (reach_right_down > 1e-11*machine_scale)
-                    & (
-                        across_q2_right_down_down*across_q2_right_down_down
-                        + along_q2_right_down_down*along_q2_right_down_down > 0.0
-                    )
-                ),
-                root(
-                    across_q2_right_down_down*across_q2_right_down_down
-                    + along_q2_right_down_down*along_q2_right_down_down
-                ),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_right_down_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                along_q2_right_down_down/length_q2_right_down_down,
-                cos(free_a2),
-            )
-            sin_q2_right_down_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                across_q2_right_down_down/length_q2_right_down_down,
-                sin(free_a2),
-            )
-        r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
-        r21_from_q1_before_q56_left_up = r33*radius_q6_left - r21_from_q1_before_q6_left_up*r23_from_q1_left
-        # what the unknown links must span
-        wrist_x_from_q1_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_up
-        r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
-        wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
-        reach_left_up = root(
-            wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
-        )
-        # kept as a product
-        sine_square_q3_left_up = (
-            (a3 + reach_left_up - a2)*(a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)*(a2 + reach_left_up - a3)
-            /(scale_q3*scale_q3)
-        )
-        cos_q3_left_up = (reach_left_up*reach_left_up - a2*a2 - a3*a3)/scale_q3
-        sin_q3_left_up_up = root(sine_square_q3_left_up)
-        if everywhere(reach_left_up > 1e-11*machine_scale):
-            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_up = (
-                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
-            )
-            across_q2_left_up_up = (
-                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
-            )
-            length_q2_left_up_up = select(
-                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0,
-                root(across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up),
-                1.0,
-            )
-            cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
-            sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_up = (
-                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
-            )
-            across_q2_left_down_up = (
-                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
-            )
-            length_q2_left_down_up = select(
-                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0,
-                root(across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up),
-                1.0,
-            )
-            cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
-            sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
-        else:
-            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_up = (
-                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
-            )
-            across_q2_left_up_up = (
-                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
-            )
-            length_q2_left_up_up = select(
-                (
-                    (reach_left_up > 1e-11*machine_scale)
-                    & (across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0)
-                ),
-                root(across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_up_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                along_q2_left_up_up/length_q2_left_up_up,
-                cos(free_a2),
-            )
-            sin_q2_left_up_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                across_q2_left_up_up/length_q2_left_up_up,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_up = (
-                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
-            )
-            across_q2_left_down_up = (
-                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
-            )
-            length_q2_left_down_up = select(
-                (
-                    (reach_left_up > 1e-11*machine_scale)
-                    & (across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0)
-                ),
-                root(across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_down_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                along_q2_left_down_up/length_q2_left_down_up,
-                cos(free_a2),
-            )
-            sin_q2_left_down_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                across_q2_left_down_up/length_q2_left_down_up,
-                sin(free_a2),
-            )
         r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
         r21_from_q1_before_q56_right_up = r33*radius_q6_right - r21_from_q1_before_q6_right_up*r23_from_q1_right
         # what the unknown links must span
@@ -1502,6 +1499,7 @@ class ArrayPrograms(Programs):
             cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
             sin_q2_right_down_up = across_q2_right_down_up/length_q2_right_down_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             arm_along_q2_right_up = a2 + a3*cos_q3_right_up
             arm_across_q2_right_up_up = a3*sin_q3_right_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations

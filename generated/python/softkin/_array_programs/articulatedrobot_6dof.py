@@ -475,14 +475,18 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1_front = root(sine_square_q1)
         if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1_front = root(sine_square_q1)
             # its reference where it is free
             cos_q1_front = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1
             sin_q1_front = (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1
+            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1_front = root(sine_square_q1)
             # its reference where it is free
             cos_q1_front = select(
                 distance_q1 > 1e-11*machine_scale,
@@ -494,6 +498,17 @@ class ArrayPrograms(Programs):
                 (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1,
                 sin(free_a1),
             )
+            # its reference where it is free
+            cos_q1_back = select(
+                distance_q1 > 1e-11*machine_scale,
+                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1_back = select(
+                distance_q1 > 1e-11*machine_scale,
+                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1,
+                sin(free_a1),
+            )
         wrist_x_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
@@ -503,7 +518,6 @@ class ArrayPrograms(Programs):
             (effective_q3 + reach_front - a2)*(a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
             *(a2 + reach_front - effective_q3)/(swing_scale_q3*swing_scale_q3)
         )
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
         sin_swing_q3_front_down = -root(sine_square_q3_front)
         cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 - d4*sin_swing_q3_front_down/effective_q3
@@ -538,6 +552,7 @@ class ArrayPrograms(Programs):
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
             arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -588,20 +603,44 @@ class ArrayPrograms(Programs):
                 across_q2_front_up/length_q2_front_up,
                 sin(free_a2),
             )
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
+        r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
+        sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
+        cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
+        r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
+        r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
+        # q4: direction and distance of a point
+        radius_q4_front_down = root(
+            r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
+        )
+        if everywhere(radius_q4_front_down > 1e-11):
+            cos_q4_front_down_down = -r13_from_q123_front_down/radius_q4_front_down  # its reference where it is free
+            sin_q4_front_down_down = r23_from_q1_front/radius_q4_front_down
+            cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
+            sin_q4_front_down_up = -sin_q4_front_down_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            length_q4_front_down = select(radius_q4_front_down > 1e-11, radius_q4_front_down, 1.0)
             # its reference where it is free
-            cos_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1,
-                cos(free_a1),
+            cos_q4_front_down_down = select(
+                radius_q4_front_down > 1e-11,
+                -r13_from_q123_front_down/length_q4_front_down,
+                cos(free_a4),
             )
-            sin_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1,
-                sin(free_a1),
+            sin_q4_front_down_down = select(
+                radius_q4_front_down > 1e-11,
+                r23_from_q1_front/length_q4_front_down,
+                sin(free_a4),
+            )
+            # its reference where it is free
+            cos_q4_front_down_up = select(
+                radius_q4_front_down > 1e-11,
+                r13_from_q123_front_down/length_q4_front_down,
+                cos(free_a4),
+            )
+            sin_q4_front_down_up = select(
+                radius_q4_front_down > 1e-11,
+                -r23_from_q1_front/length_q4_front_down,
+                sin(free_a4),
             )
         wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
         reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
@@ -642,6 +681,7 @@ class ArrayPrograms(Programs):
             cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
             sin_q2_back_up = across_q2_back_up/length_q2_back_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
             arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -682,45 +722,6 @@ class ArrayPrograms(Programs):
             # its reference where it is free
             cos_q2_back_up = select(reach_back > 1e-11*machine_scale, along_q2_back_up/length_q2_back_up, cos(free_a2))
             sin_q2_back_up = select(reach_back > 1e-11*machine_scale, across_q2_back_up/length_q2_back_up, sin(free_a2))
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
-        r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
-        sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
-        cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
-        r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
-        r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
-        # q4: direction and distance of a point
-        radius_q4_front_down = root(
-            r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
-        )
-        if everywhere(radius_q4_front_down > 1e-11):
-            cos_q4_front_down_down = -r13_from_q123_front_down/radius_q4_front_down  # its reference where it is free
-            sin_q4_front_down_down = r23_from_q1_front/radius_q4_front_down
-            cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
-            sin_q4_front_down_up = -sin_q4_front_down_down
-        else:
-            length_q4_front_down = select(radius_q4_front_down > 1e-11, radius_q4_front_down, 1.0)
-            # its reference where it is free
-            cos_q4_front_down_down = select(
-                radius_q4_front_down > 1e-11,
-                -r13_from_q123_front_down/length_q4_front_down,
-                cos(free_a4),
-            )
-            sin_q4_front_down_down = select(
-                radius_q4_front_down > 1e-11,
-                r23_from_q1_front/length_q4_front_down,
-                sin(free_a4),
-            )
-            # its reference where it is free
-            cos_q4_front_down_up = select(
-                radius_q4_front_down > 1e-11,
-                r13_from_q123_front_down/length_q4_front_down,
-                cos(free_a4),
-            )
-            sin_q4_front_down_up = select(
-                radius_q4_front_down > 1e-11,
-                -r23_from_q1_front/length_q4_front_down,
-                sin(free_a4),
-            )
         r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
         sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
         cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
@@ -736,6 +737,7 @@ class ArrayPrograms(Programs):
             cos_q4_back_down_up = -cos_q4_back_down_down  # its reference where it is free
             sin_q4_back_down_up = -sin_q4_back_down_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
             length_q4_back_down = select(radius_q4_back_down > 1e-11, radius_q4_back_down, 1.0)
             # its reference where it is free
             cos_q4_back_down_down = select(
@@ -766,6 +768,7 @@ class ArrayPrograms(Programs):
             cos_q4_front_up_up = -cos_q4_front_up_down  # its reference where it is free
             sin_q4_front_up_up = -sin_q4_front_up_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
             length_q4_front_up = select(radius_q4_front_up > 1e-11, radius_q4_front_up, 1.0)
             # its reference where it is free
             cos_q4_front_up_down = select(
@@ -792,6 +795,7 @@ class ArrayPrograms(Programs):
             cos_q4_back_up_up = -cos_q4_back_up_down  # its reference where it is free
             sin_q4_back_up_up = -sin_q4_back_up_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
             length_q4_back_up = select(radius_q4_back_up > 1e-11, radius_q4_back_up, 1.0)
             # its reference where it is free
             cos_q4_back_up_down = select(

@@ -276,13 +276,17 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1_front = root(sine_square_q1)
         if everywhere(distance_q1 > 1e-11*machine_scale):
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1_front = root(sine_square_q1)
             cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
             sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
+            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1_front = root(sine_square_q1)
             # its reference where it is free
             cos_q1_front = select(
                 distance_q1 > 1e-11*machine_scale,
@@ -294,6 +298,17 @@ class ArrayPrograms(Programs):
                 (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1,
                 sin(free_a1),
             )
+            # its reference where it is free
+            cos_q1_back = select(
+                distance_q1 > 1e-11*machine_scale,
+                (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1,
+                cos(free_a1),
+            )
+            sin_q1_back = select(
+                distance_q1 > 1e-11*machine_scale,
+                (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1,
+                sin(free_a1),
+            )
         wrist_x_from_q1_front = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach_front = root(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
@@ -303,7 +318,6 @@ class ArrayPrograms(Programs):
             *(a2 + effective_q3_2 - reach_front)*(a2 + reach_front - effective_q3_2)
             /(swing_scale_q3_2*swing_scale_q3_2)
         )
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
         sin_swing_q3_front_down = -root(sine_square_q3_front)
         cos_q3_front_down = a3*cos_swing_q3_front/effective_q3_2 - d4*sin_swing_q3_front_down/effective_q3_2
@@ -338,6 +352,7 @@ class ArrayPrograms(Programs):
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
             arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -388,21 +403,6 @@ class ArrayPrograms(Programs):
                 across_q2_front_up/length_q2_front_up,
                 sin(free_a2),
             )
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
-        else:
-            # its reference where it is free
-            cos_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1,
-                sin(free_a1),
-            )
         wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
         reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -442,6 +442,7 @@ class ArrayPrograms(Programs):
             cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
             sin_q2_back_up = across_q2_back_up/length_q2_back_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
             arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations

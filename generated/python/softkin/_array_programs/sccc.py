@@ -158,7 +158,6 @@ class ArrayPrograms(Programs):
         )
         # out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2 = root(sine_square_a2)*sigma_elbow
         if everywhere(reach > 1e-11*machine_scale):
@@ -174,6 +173,7 @@ class ArrayPrograms(Programs):
             cos_a1 = along_a1/length_a1  # its reference where it is free
             sin_a1 = across_a1/length_a1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
@@ -194,10 +194,11 @@ class ArrayPrograms(Programs):
         )
         axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
         if everywhere(absolute(turn_a2) > 0.0):
             near_a2 = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
             # A2: where its turn is open
             open_a2 = select(single_a2 > 0.0, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE)
@@ -212,6 +213,8 @@ class ArrayPrograms(Programs):
         if everywhere(absolute(turn_a3) > 0.0):
             near_a3 = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
             free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
             # A3: where its turn is open
@@ -354,7 +357,6 @@ class ArrayPrograms(Programs):
         )
         # out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2_right = root(sine_square_a2)
         if everywhere(reach > 1e-11*machine_scale):
@@ -380,6 +382,7 @@ class ArrayPrograms(Programs):
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
             # a1: linear pair in the x and y equations
@@ -411,13 +414,14 @@ class ArrayPrograms(Programs):
         )
         axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
-        ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
         axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
         if everywhere(absolute(turn_a2) > 0.0):
             near_a2_right = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
             near_a2_left = near_a2_right
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
             # A2: where its turn is open
             open_a2_right = select(
@@ -449,6 +453,8 @@ class ArrayPrograms(Programs):
             near_a3_right = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
             near_a3_left = near_a3_right
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
             free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
             # A3: where its turn is open

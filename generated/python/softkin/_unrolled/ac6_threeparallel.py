@@ -87,28 +87,34 @@ def unrolled(k: Constants) -> Unrolled:
         # out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(3.0,)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d4/divisor_q1
-        sin_swing_q1_left = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
         if distance_q1 > 1e-11*machine_scale:
+            cos_swing_q1 = -d4/divisor_q1
+            sin_swing_q1_left = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
             sin_q1_left = (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1
+            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
+            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_left = cos(free_a1)  # its reference where it is free
             sin_q1_left = sin(free_a1)
+            cos_q1_right = cos_q1_left  # its reference where it is free
+            sin_q1_right = sin_q1_left
         r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
         r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
         # q6: direction and distance of a point
         radius_q6_left = sqrt(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
-        free_a6 = (ref_a6 - offset_a6)*DEGREE
         if radius_q6_left > 1e-11:
-            length_q6_left = radius_q6_left
-            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/length_q6_left  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/length_q6_left
+            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
+            cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down
         else:
-            length_q6_left = 1.0
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3_left_down = cos(free_a6)  # its reference where it is free
             sin_q6_before_q6_of_q3_left_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_left_up = cos_q6_before_q6_of_q3_left_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_up = sin_q6_before_q6_of_q3_left_down
         r23_from_q1_left = r23*cos_q1_left - r13*sin_q1_left
         wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
         wrist_x_from_q1_along_left = d5*r23_from_q1_left*r31
@@ -217,135 +223,60 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
                 sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
-        if distance_q1 > 1e-11*machine_scale:
-            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
-        else:
-            cos_q1_right = cos(free_a1)  # its reference where it is free
-            sin_q1_right = sin(free_a1)
-        r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
-        r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
-        # q6: direction and distance of a point
-        radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
-        if radius_q6_right > 1e-11:
-            length_q6_right = radius_q6_right
-            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/length_q6_right  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/length_q6_right
-        else:
-            length_q6_right = 1.0
-            cos_q6_before_q6_of_q3_right_down = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = sin(free_a6)
-        r23_from_q1_right = r23*cos_q1_right - r13*sin_q1_right
-        wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
-        wrist_x_from_q1_along_right = d5*r23_from_q1_right*r31
-        wrist_x_from_q1_across_right = -d5*r23_from_q1_right*r32
-        wrist_x_from_q1_here_right_down = (
-            wrist_x_from_q1_fixed_right_down + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_down
-            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_down
+        r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
+        r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
+        # what the unknown links must span
+        wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
+        r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
+        # what the unknown links must span
+        wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
+        reach_left_down = sqrt(
+            wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
         )
-        wrist_y_from_q1_here_right_down = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_down
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_down
+        cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
+        # kept as a product
+        sine_square_q3_left_down = (
+            (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
+            *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
         )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_right_down = (
-            wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
-            + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2*a2 - a3*a3
-        )
-        if abs(value_q6_of_q3_right_down) <= size_q6_of_q3:
-            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+        sin_q3_left_up_down = (sqrt(sine_square_q3_left_down) if sine_square_q3_left_down > 0.0 else 0.0)
+        if reach_left_down > 1e-11*machine_scale:
+            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
+            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_up_down = (
+                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
+            )
+            across_q2_left_up_down = (
+                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
+            )
+            length_q2_left_up_down = (
+                sqrt(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down)
+                if across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0
+                else 1.0
+            )
+            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
+            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_down_down = (
+                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
+            )
+            across_q2_left_down_down = (
+                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
+            )
+            length_q2_left_down_down = (
+                sqrt(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down)
+                if across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down > 0.0
+                else 1.0
+            )
+            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
+            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
         else:
-            along_q6_of_q3_right_down = (
-                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_right_down = (
-                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_right_down = sqrt(
-                across_q6_of_q3_right_down*across_q6_of_q3_right_down
-                + along_q6_of_q3_right_down*along_q6_of_q3_right_down
-            )
-            if swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3:
-                level_q6_of_q3_right_down = (
-                    value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
-                    - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_right_down = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down
-                    )
-                )
-                lowest_q6_of_q3_right_down = (
-                    1.0
-                    if (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down < -1.0
-                        else (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down
-                    )
-                )
-            else:
-                highest_q6_of_q3_right_down = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_right_down = -1.0
-            near_q6_of_q3_right_down = arctan2(
-                root((1.0 - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)) + 0.0,
-                highest_q6_of_q3_right_down + 0.0,
-            )
-            far_q6_of_q3_right_down = arctan2(
-                root((1.0 - lowest_q6_of_q3_right_down)*(1.0 + lowest_q6_of_q3_right_down)) + 0.0,
-                lowest_q6_of_q3_right_down + 0.0,
-            )
-            centre_q6_of_q3_right_down = arctan2(across_q6_of_q3_right_down + 0.0, along_q6_of_q3_right_down + 0.0)
-            angle_q6_of_q3_right_down = arctan2(
-                sin_q6_before_q6_of_q3_right_down + 0.0, cos_q6_before_q6_of_q3_right_down + 0.0,
-            )
-            side_q6_of_q3_right_down = (
-                1.0
-                if along_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down - across_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_right_down = nearest_on_arc(
-                angle_q6_of_q3_right_down,
-                (
-                    centre_q6_of_q3_right_down
-                    + 0.5*(far_q6_of_q3_right_down + near_q6_of_q3_right_down)*side_q6_of_q3_right_down
-                ),
-                0.5*far_q6_of_q3_right_down - 0.5*near_q6_of_q3_right_down,
-            )
-            cos_q6_after_q6_of_q3_right_down = cos(moved_q6_of_q3_right_down)
-            sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
-            # what the motion changes of the pose
-            cost_q6_of_q3_right_down = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
-                    )*(cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down)
-                    + (
-                        sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
-                    )*(sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down)
-                )
-                *radius_q6_right
-            )
-            if cost_q6_of_q3_right_down > 1e-12 and radius_q6_right > 1e-11:
-                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-            else:
-                cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
-                sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
-        if radius_q6_left > 1e-11:
-            cos_q6_before_q6_of_q3_left_up = r21_from_q1_left/length_q6_left  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left/length_q6_left
-        else:
-            cos_q6_before_q6_of_q3_left_up = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = sin(free_a6)
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2_left_up_down = cos(free_a2)  # its reference where it is free
+            sin_q2_left_up_down = sin(free_a2)
+            cos_q2_left_down_down = cos_q2_left_up_down  # its reference where it is free
+            sin_q2_left_down_down = sin_q2_left_up_down
         wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
         wrist_x_from_q1_here_left_up = (
             wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
@@ -442,227 +373,6 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
                 sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
-        if radius_q6_right > 1e-11:
-            cos_q6_before_q6_of_q3_right_up = r21_from_q1_right/length_q6_right  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right/length_q6_right
-        else:
-            cos_q6_before_q6_of_q3_right_up = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = sin(free_a6)
-        wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
-        wrist_x_from_q1_here_right_up = (
-            wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
-            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
-        )
-        wrist_y_from_q1_here_right_up = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_up
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_up
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_right_up = (
-            wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
-            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
-        )
-        if abs(value_q6_of_q3_right_up) <= size_q6_of_q3:
-            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-        else:
-            along_q6_of_q3_right_up = (
-                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_right_up = (
-                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_right_up = sqrt(
-                across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
-            )
-            if swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3:
-                level_q6_of_q3_right_up = (
-                    value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
-                    - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_right_up = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up
-                    )
-                )
-                lowest_q6_of_q3_right_up = (
-                    1.0
-                    if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up < -1.0
-                        else (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up
-                    )
-                )
-            else:
-                highest_q6_of_q3_right_up = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_right_up = -1.0
-            near_q6_of_q3_right_up = arctan2(
-                root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)) + 0.0,
-                highest_q6_of_q3_right_up + 0.0,
-            )
-            far_q6_of_q3_right_up = arctan2(
-                root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)) + 0.0,
-                lowest_q6_of_q3_right_up + 0.0,
-            )
-            centre_q6_of_q3_right_up = arctan2(across_q6_of_q3_right_up + 0.0, along_q6_of_q3_right_up + 0.0)
-            angle_q6_of_q3_right_up = arctan2(
-                sin_q6_before_q6_of_q3_right_up + 0.0, cos_q6_before_q6_of_q3_right_up + 0.0,
-            )
-            side_q6_of_q3_right_up = (
-                1.0
-                if along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_right_up = nearest_on_arc(
-                angle_q6_of_q3_right_up,
-                (centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)*side_q6_of_q3_right_up),
-                0.5*far_q6_of_q3_right_up - 0.5*near_q6_of_q3_right_up,
-            )
-            cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
-            sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
-            # what the motion changes of the pose
-            cost_q6_of_q3_right_up = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
-                    )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
-                    + (
-                        sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
-                    )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
-                )
-                *radius_q6_right
-            )
-            if cost_q6_of_q3_right_up > 1e-12 and radius_q6_right > 1e-11:
-                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            else:
-                cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
-                sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
-        r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
-        r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
-        # what the unknown links must span
-        wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
-        r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
-        # what the unknown links must span
-        wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
-        reach_left_down = sqrt(
-            wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
-        )
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
-        # kept as a product
-        sine_square_q3_left_down = (
-            (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
-            *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
-        )
-        sin_q3_left_up_down = (sqrt(sine_square_q3_left_down) if sine_square_q3_left_down > 0.0 else 0.0)
-        if reach_left_down > 1e-11*machine_scale:
-            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_down = (
-                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
-            )
-            across_q2_left_up_down = (
-                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
-            )
-            length_q2_left_up_down = (
-                sqrt(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down)
-                if across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0
-                else 1.0
-            )
-            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
-            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_down = (
-                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
-            )
-            across_q2_left_down_down = (
-                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
-            )
-            length_q2_left_down_down = (
-                sqrt(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down)
-                if across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down > 0.0
-                else 1.0
-            )
-            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
-            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
-        else:
-            cos_q2_left_up_down = cos(free_a2)  # its reference where it is free
-            sin_q2_left_up_down = sin(free_a2)
-            cos_q2_left_down_down = cos_q2_left_up_down  # its reference where it is free
-            sin_q2_left_down_down = sin_q2_left_up_down
-        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
-        r21_from_q1_before_q56_right_down = -r21_from_q1_before_q6_right_down*r23_from_q1_right - r33*radius_q6_right
-        # what the unknown links must span
-        wrist_x_from_q1_right_down = (
-            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
-        )
-        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
-        # what the unknown links must span
-        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
-        reach_right_down = sqrt(
-            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
-            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
-        )
-        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
-        # kept as a product
-        sine_square_q3_right_down = (
-            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
-            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
-        )
-        sin_q3_right_up_down = (sqrt(sine_square_q3_right_down) if sine_square_q3_right_down > 0.0 else 0.0)
-        if reach_right_down > 1e-11*machine_scale:
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_down = (
-                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                + arm_along_q2_right_down*wrist_x_from_q1_right_down
-            )
-            across_q2_right_up_down = (
-                arm_along_q2_right_down*wrist_y_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            )
-            length_q2_right_up_down = (
-                sqrt(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down)
-                if across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down > 0.0
-                else 1.0
-            )
-            cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
-            sin_q2_right_up_down = across_q2_right_up_down/length_q2_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_down = (
-                arm_along_q2_right_down*wrist_x_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            )
-            across_q2_right_down_down = (
-                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                + arm_along_q2_right_down*wrist_y_from_q1_right_down
-            )
-            length_q2_right_down_down = (
-                sqrt(
-                    across_q2_right_down_down*across_q2_right_down_down
-                    + along_q2_right_down_down*along_q2_right_down_down
-                )
-                if across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down > 0.0
-                else 1.0
-            )
-            cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
-            sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
-        else:
-            cos_q2_right_up_down = cos(free_a2)  # its reference where it is free
-            sin_q2_right_up_down = sin(free_a2)
-            cos_q2_right_down_down = cos_q2_right_up_down  # its reference where it is free
-            sin_q2_right_down_down = sin_q2_right_up_down
         r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
         r21_from_q1_before_q56_left_up = r33*radius_q6_left - r21_from_q1_before_q6_left_up*r23_from_q1_left
         # what the unknown links must span
@@ -711,63 +421,11 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
             sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_left_up_up = cos(free_a2)  # its reference where it is free
             sin_q2_left_up_up = sin(free_a2)
             cos_q2_left_down_up = cos_q2_left_up_up  # its reference where it is free
             sin_q2_left_down_up = sin_q2_left_up_up
-        r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
-        r21_from_q1_before_q56_right_up = r33*radius_q6_right - r21_from_q1_before_q6_right_up*r23_from_q1_right
-        # what the unknown links must span
-        wrist_x_from_q1_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_up
-        r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
-        # what the unknown links must span
-        wrist_y_from_q1_right_up = wrist_z + d5*r22_from_q1_before_q6_right_up - d1
-        reach_right_up = sqrt(
-            wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
-        )
-        cos_q3_right_up = (reach_right_up*reach_right_up - a2*a2 - a3*a3)/scale_q3
-        # kept as a product
-        sine_square_q3_right_up = (
-            (a3 + reach_right_up - a2)*(a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
-            *(a2 + reach_right_up - a3)/(scale_q3*scale_q3)
-        )
-        sin_q3_right_up_up = (sqrt(sine_square_q3_right_up) if sine_square_q3_right_up > 0.0 else 0.0)
-        if reach_right_up > 1e-11*machine_scale:
-            arm_along_q2_right_up = a2 + a3*cos_q3_right_up
-            arm_across_q2_right_up_up = a3*sin_q3_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_up = (
-                arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
-            )
-            across_q2_right_up_up = (
-                arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
-            )
-            length_q2_right_up_up = (
-                sqrt(across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up)
-                if across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up > 0.0
-                else 1.0
-            )
-            cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
-            sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_up = (
-                arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
-            )
-            across_q2_right_down_up = (
-                arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
-            )
-            length_q2_right_down_up = (
-                sqrt(across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up)
-                if across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up > 0.0
-                else 1.0
-            )
-            cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
-            sin_q2_right_down_up = across_q2_right_down_up/length_q2_right_down_up
-        else:
-            cos_q2_right_up_up = cos(free_a2)  # its reference where it is free
-            sin_q2_right_up_up = sin(free_a2)
-            cos_q2_right_down_up = cos_q2_right_up_up  # its reference where it is free
-            sin_q2_right_down_up = sin_q2_right_up_up
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         # A2: its turn
         axis_a2_left_up_down = offset_a2 + arctan2(sin_q2_left_up_down, cos_q2_left_up_down + 0.0)/DEGREE
@@ -918,6 +576,342 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_down_down = 3.0  # limits of A2, limits of A3, limits of A4
             refusal_left_up_up = 3.0  # limits of A2, limits of A3, limits of A4
             refusal_left_down_up = 3.0  # limits of A2, limits of A3, limits of A4
+        r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
+        r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
+        # q6: direction and distance of a point
+        radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
+        if radius_q6_right > 1e-11:
+            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
+            cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down
+        else:
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_q6_before_q6_of_q3_right_down = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_right_up = cos_q6_before_q6_of_q3_right_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_up = sin_q6_before_q6_of_q3_right_down
+        r23_from_q1_right = r23*cos_q1_right - r13*sin_q1_right
+        wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
+        wrist_x_from_q1_along_right = d5*r23_from_q1_right*r31
+        wrist_x_from_q1_across_right = -d5*r23_from_q1_right*r32
+        wrist_x_from_q1_here_right_down = (
+            wrist_x_from_q1_fixed_right_down + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_down
+            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_down
+        )
+        wrist_y_from_q1_here_right_down = (
+            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_down
+            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_down
+        )
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_right_down = (
+            wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
+            + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2*a2 - a3*a3
+        )
+        if abs(value_q6_of_q3_right_down) <= size_q6_of_q3:
+            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+        else:
+            along_q6_of_q3_right_down = (
+                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
+                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            )
+            across_q6_of_q3_right_down = (
+                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down
+                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3_right_down = sqrt(
+                across_q6_of_q3_right_down*across_q6_of_q3_right_down
+                + along_q6_of_q3_right_down*along_q6_of_q3_right_down
+            )
+            if swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3:
+                level_q6_of_q3_right_down = (
+                    value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
+                    - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
+                )
+                # the arc: cosines from its centre
+                highest_q6_of_q3_right_down = (
+                    1.0
+                    if (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down > 1.0
+                    else (
+                        -1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down < -1.0
+                        else (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down
+                    )
+                )
+                lowest_q6_of_q3_right_down = (
+                    1.0
+                    if (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down > 1.0
+                    else (
+                        -1.0
+                        if (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down < -1.0
+                        else (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down
+                    )
+                )
+            else:
+                highest_q6_of_q3_right_down = 1.0  # the arc: cosines from its centre
+                lowest_q6_of_q3_right_down = -1.0
+            near_q6_of_q3_right_down = arctan2(
+                root((1.0 - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)) + 0.0,
+                highest_q6_of_q3_right_down + 0.0,
+            )
+            far_q6_of_q3_right_down = arctan2(
+                root((1.0 - lowest_q6_of_q3_right_down)*(1.0 + lowest_q6_of_q3_right_down)) + 0.0,
+                lowest_q6_of_q3_right_down + 0.0,
+            )
+            centre_q6_of_q3_right_down = arctan2(across_q6_of_q3_right_down + 0.0, along_q6_of_q3_right_down + 0.0)
+            angle_q6_of_q3_right_down = arctan2(
+                sin_q6_before_q6_of_q3_right_down + 0.0, cos_q6_before_q6_of_q3_right_down + 0.0,
+            )
+            side_q6_of_q3_right_down = (
+                1.0
+                if along_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down - across_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down >= 0.0
+                else -1.0
+            )
+            moved_q6_of_q3_right_down = nearest_on_arc(
+                angle_q6_of_q3_right_down,
+                (
+                    centre_q6_of_q3_right_down
+                    + 0.5*(far_q6_of_q3_right_down + near_q6_of_q3_right_down)*side_q6_of_q3_right_down
+                ),
+                0.5*far_q6_of_q3_right_down - 0.5*near_q6_of_q3_right_down,
+            )
+            cos_q6_after_q6_of_q3_right_down = cos(moved_q6_of_q3_right_down)
+            sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
+            # what the motion changes of the pose
+            cost_q6_of_q3_right_down = (
+                sqrt(
+                    (
+                        cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
+                    )*(cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down)
+                    + (
+                        sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
+                    )*(sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down)
+                )
+                *radius_q6_right
+            )
+            if cost_q6_of_q3_right_down > 1e-12 and radius_q6_right > 1e-11:
+                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            else:
+                cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
+                sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
+        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
+        r21_from_q1_before_q56_right_down = -r21_from_q1_before_q6_right_down*r23_from_q1_right - r33*radius_q6_right
+        # what the unknown links must span
+        wrist_x_from_q1_right_down = (
+            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
+        )
+        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
+        # what the unknown links must span
+        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
+        reach_right_down = sqrt(
+            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
+            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
+        )
+        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
+        # kept as a product
+        sine_square_q3_right_down = (
+            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
+            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
+        )
+        sin_q3_right_up_down = (sqrt(sine_square_q3_right_down) if sine_square_q3_right_down > 0.0 else 0.0)
+        if reach_right_down > 1e-11*machine_scale:
+            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
+            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_up_down = (
+                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+                + arm_along_q2_right_down*wrist_x_from_q1_right_down
+            )
+            across_q2_right_up_down = (
+                arm_along_q2_right_down*wrist_y_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+            )
+            length_q2_right_up_down = (
+                sqrt(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down)
+                if across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down > 0.0
+                else 1.0
+            )
+            cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
+            sin_q2_right_up_down = across_q2_right_up_down/length_q2_right_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_down_down = (
+                arm_along_q2_right_down*wrist_x_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+            )
+            across_q2_right_down_down = (
+                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+                + arm_along_q2_right_down*wrist_y_from_q1_right_down
+            )
+            length_q2_right_down_down = (
+                sqrt(
+                    across_q2_right_down_down*across_q2_right_down_down
+                    + along_q2_right_down_down*along_q2_right_down_down
+                )
+                if across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down > 0.0
+                else 1.0
+            )
+            cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
+            sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2_right_up_down = cos(free_a2)  # its reference where it is free
+            sin_q2_right_up_down = sin(free_a2)
+            cos_q2_right_down_down = cos_q2_right_up_down  # its reference where it is free
+            sin_q2_right_down_down = sin_q2_right_up_down
+        wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
+        wrist_x_from_q1_here_right_up = (
+            wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
+            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
+        )
+        wrist_y_from_q1_here_right_up = (
+            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_up
+            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_up
+        )
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_right_up = (
+            wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
+            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
+        )
+        if abs(value_q6_of_q3_right_up) <= size_q6_of_q3:
+            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+        else:
+            along_q6_of_q3_right_up = (
+                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
+                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            )
+            across_q6_of_q3_right_up = (
+                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
+                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3_right_up = sqrt(
+                across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
+            )
+            if swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3:
+                level_q6_of_q3_right_up = (
+                    value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
+                    - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
+                )
+                # the arc: cosines from its centre
+                highest_q6_of_q3_right_up = (
+                    1.0
+                    if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0
+                    else (
+                        -1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0
+                        else (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up
+                    )
+                )
+                lowest_q6_of_q3_right_up = (
+                    1.0
+                    if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up > 1.0
+                    else (
+                        -1.0
+                        if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up < -1.0
+                        else (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up
+                    )
+                )
+            else:
+                highest_q6_of_q3_right_up = 1.0  # the arc: cosines from its centre
+                lowest_q6_of_q3_right_up = -1.0
+            near_q6_of_q3_right_up = arctan2(
+                root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)) + 0.0,
+                highest_q6_of_q3_right_up + 0.0,
+            )
+            far_q6_of_q3_right_up = arctan2(
+                root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)) + 0.0,
+                lowest_q6_of_q3_right_up + 0.0,
+            )
+            centre_q6_of_q3_right_up = arctan2(across_q6_of_q3_right_up + 0.0, along_q6_of_q3_right_up + 0.0)
+            angle_q6_of_q3_right_up = arctan2(
+                sin_q6_before_q6_of_q3_right_up + 0.0, cos_q6_before_q6_of_q3_right_up + 0.0,
+            )
+            side_q6_of_q3_right_up = (
+                1.0
+                if along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0
+                else -1.0
+            )
+            moved_q6_of_q3_right_up = nearest_on_arc(
+                angle_q6_of_q3_right_up,
+                (centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)*side_q6_of_q3_right_up),
+                0.5*far_q6_of_q3_right_up - 0.5*near_q6_of_q3_right_up,
+            )
+            cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
+            sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
+            # what the motion changes of the pose
+            cost_q6_of_q3_right_up = (
+                sqrt(
+                    (
+                        cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
+                    )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
+                    + (
+                        sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
+                    )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
+                )
+                *radius_q6_right
+            )
+            if cost_q6_of_q3_right_up > 1e-12 and radius_q6_right > 1e-11:
+                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            else:
+                cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
+                sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
+        r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
+        r21_from_q1_before_q56_right_up = r33*radius_q6_right - r21_from_q1_before_q6_right_up*r23_from_q1_right
+        # what the unknown links must span
+        wrist_x_from_q1_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_up
+        r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
+        # what the unknown links must span
+        wrist_y_from_q1_right_up = wrist_z + d5*r22_from_q1_before_q6_right_up - d1
+        reach_right_up = sqrt(
+            wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
+        )
+        cos_q3_right_up = (reach_right_up*reach_right_up - a2*a2 - a3*a3)/scale_q3
+        # kept as a product
+        sine_square_q3_right_up = (
+            (a3 + reach_right_up - a2)*(a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
+            *(a2 + reach_right_up - a3)/(scale_q3*scale_q3)
+        )
+        sin_q3_right_up_up = (sqrt(sine_square_q3_right_up) if sine_square_q3_right_up > 0.0 else 0.0)
+        if reach_right_up > 1e-11*machine_scale:
+            arm_along_q2_right_up = a2 + a3*cos_q3_right_up
+            arm_across_q2_right_up_up = a3*sin_q3_right_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_up_up = (
+                arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
+            )
+            across_q2_right_up_up = (
+                arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
+            )
+            length_q2_right_up_up = (
+                sqrt(across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up)
+                if across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up > 0.0
+                else 1.0
+            )
+            cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
+            sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_right_down_up = (
+                arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
+            )
+            across_q2_right_down_up = (
+                arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
+            )
+            length_q2_right_down_up = (
+                sqrt(across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up)
+                if across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up > 0.0
+                else 1.0
+            )
+            cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
+            sin_q2_right_down_up = across_q2_right_down_up/length_q2_right_down_up
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2_right_up_up = cos(free_a2)  # its reference where it is free
+            sin_q2_right_up_up = sin(free_a2)
+            cos_q2_right_down_up = cos_q2_right_up_up  # its reference where it is free
+            sin_q2_right_down_up = sin_q2_right_up_up
         # A2: its turn
         axis_a2_right_up_down = offset_a2 + arctan2(sin_q2_right_up_down, cos_q2_right_up_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a2_right_up_down - open_a2 < 179.999999999:
@@ -1149,28 +1143,34 @@ def unrolled(k: Constants) -> Unrolled:
         # out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(None,)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d4/divisor_q1
-        sin_swing_q1_left = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
         if distance_q1 > 1e-11*machine_scale:
+            cos_swing_q1 = -d4/divisor_q1
+            sin_swing_q1_left = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
             sin_q1_left = (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1
+            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
+            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_left = cos(free_a1)  # its reference where it is free
             sin_q1_left = sin(free_a1)
+            cos_q1_right = cos_q1_left  # its reference where it is free
+            sin_q1_right = sin_q1_left
         r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
         r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
         # q6: direction and distance of a point
         radius_q6_left = sqrt(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
-        free_a6 = (ref_a6 - offset_a6)*DEGREE
         if radius_q6_left > 1e-11:
-            length_q6_left = radius_q6_left
-            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/length_q6_left  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/length_q6_left
+            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
+            cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down
         else:
-            length_q6_left = 1.0
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3_left_down = cos(free_a6)  # its reference where it is free
             sin_q6_before_q6_of_q3_left_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_left_up = cos_q6_before_q6_of_q3_left_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_up = sin_q6_before_q6_of_q3_left_down
         r23_from_q1_left = r23*cos_q1_left - r13*sin_q1_left
         wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
         wrist_x_from_q1_along_left = d5*r23_from_q1_left*r31
@@ -1236,14 +1236,14 @@ def unrolled(k: Constants) -> Unrolled:
                 lowest_q6_of_q3_left_down = -1.0
             near_q6_of_q3_left_down = arctan2(
                 root((1.0 - highest_q6_of_q3_left_down)*(1.0 + highest_q6_of_q3_left_down)),
-                highest_q6_of_q3_left_down + 0.0,
+                highest_q6_of_q3_left_down,
             )
             far_q6_of_q3_left_down = arctan2(
                 root((1.0 - lowest_q6_of_q3_left_down)*(1.0 + lowest_q6_of_q3_left_down)),
-                lowest_q6_of_q3_left_down + 0.0,
+                lowest_q6_of_q3_left_down,
             )
-            centre_q6_of_q3_left_down = arctan2(across_q6_of_q3_left_down, along_q6_of_q3_left_down + 0.0)
-            angle_q6_of_q3_left_down = arctan2(sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_down + 0.0)
+            centre_q6_of_q3_left_down = arctan2(across_q6_of_q3_left_down, along_q6_of_q3_left_down)
+            angle_q6_of_q3_left_down = arctan2(sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_down)
             side_q6_of_q3_left_down = (
                 1.0
                 if along_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down - across_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down >= 0.0
@@ -1277,24 +1277,75 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
                 sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
-        if distance_q1 > 1e-11*machine_scale:
-            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
+        r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
+        r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
+        # what the unknown links must span
+        wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
+        r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
+        # what the unknown links must span
+        wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
+        reach_left_down = sqrt(
+            wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
+        )
+        # kept as a product
+        sine_square_q3_left_down = (
+            (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
+            *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
+        )
+        cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
+        sin_q3_left_up_down = (sqrt(sine_square_q3_left_down) if sine_square_q3_left_down > 0.0 else 0.0)
+        if reach_left_down > 1e-11*machine_scale:
+            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
+            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_up_down = (
+                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
+            )
+            across_q2_left_up_down = (
+                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
+            )
+            length_q2_left_up_down = (
+                sqrt(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down)
+                if across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0
+                else 1.0
+            )
+            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
+            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_left_down_down = (
+                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
+            )
+            across_q2_left_down_down = (
+                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
+            )
+            length_q2_left_down_down = (
+                sqrt(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down)
+                if across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down > 0.0
+                else 1.0
+            )
+            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
+            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
         else:
-            cos_q1_right = cos(free_a1)  # its reference where it is free
-            sin_q1_right = sin(free_a1)
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2_left_up_down = cos(free_a2)  # its reference where it is free
+            sin_q2_left_up_down = sin(free_a2)
+            cos_q2_left_down_down = cos_q2_left_up_down  # its reference where it is free
+            sin_q2_left_down_down = sin_q2_left_up_down
         r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
         r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
         # q6: direction and distance of a point
         radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
         if radius_q6_right > 1e-11:
-            length_q6_right = radius_q6_right
-            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/length_q6_right  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/length_q6_right
+            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
+            cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down
         else:
-            length_q6_right = 1.0
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3_right_down = cos(free_a6)  # its reference where it is free
             sin_q6_before_q6_of_q3_right_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_right_up = cos_q6_before_q6_of_q3_right_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_up = sin_q6_before_q6_of_q3_right_down
         r23_from_q1_right = r23*cos_q1_right - r13*sin_q1_right
         wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
         wrist_x_from_q1_along_right = d5*r23_from_q1_right*r31
@@ -1357,16 +1408,14 @@ def unrolled(k: Constants) -> Unrolled:
                 lowest_q6_of_q3_right_down = -1.0
             near_q6_of_q3_right_down = arctan2(
                 root((1.0 - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)),
-                highest_q6_of_q3_right_down + 0.0,
+                highest_q6_of_q3_right_down,
             )
             far_q6_of_q3_right_down = arctan2(
                 root((1.0 - lowest_q6_of_q3_right_down)*(1.0 + lowest_q6_of_q3_right_down)),
-                lowest_q6_of_q3_right_down + 0.0,
+                lowest_q6_of_q3_right_down,
             )
-            centre_q6_of_q3_right_down = arctan2(across_q6_of_q3_right_down, along_q6_of_q3_right_down + 0.0)
-            angle_q6_of_q3_right_down = arctan2(
-                sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_down + 0.0,
-            )
+            centre_q6_of_q3_right_down = arctan2(across_q6_of_q3_right_down, along_q6_of_q3_right_down)
+            angle_q6_of_q3_right_down = arctan2(sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_down)
             side_q6_of_q3_right_down = (
                 1.0
                 if along_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down - across_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down >= 0.0
@@ -1400,264 +1449,6 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
                 sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
-        if radius_q6_left > 1e-11:
-            cos_q6_before_q6_of_q3_left_up = r21_from_q1_left/length_q6_left  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left/length_q6_left
-        else:
-            cos_q6_before_q6_of_q3_left_up = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = sin(free_a6)
-        wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
-        wrist_x_from_q1_here_left_up = (
-            wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
-            + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_up
-        )
-        wrist_y_from_q1_here_left_up = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_up
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_up
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_left_up = (
-            wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
-            + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2*a2 - a3*a3
-        )
-        if abs(value_q6_of_q3_left_up) <= size_q6_of_q3:
-            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-        else:
-            along_q6_of_q3_left_up = (
-                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_left_up = (
-                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_left_up = sqrt(
-                across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
-            )
-            if swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3:
-                level_q6_of_q3_left_up = (
-                    value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                    - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_left_up = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up
-                    )
-                )
-                lowest_q6_of_q3_left_up = (
-                    1.0
-                    if (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up < -1.0
-                        else (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up
-                    )
-                )
-            else:
-                highest_q6_of_q3_left_up = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_left_up = -1.0
-            near_q6_of_q3_left_up = arctan2(
-                root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
-                highest_q6_of_q3_left_up + 0.0,
-            )
-            far_q6_of_q3_left_up = arctan2(
-                root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
-                lowest_q6_of_q3_left_up + 0.0,
-            )
-            centre_q6_of_q3_left_up = arctan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up + 0.0)
-            angle_q6_of_q3_left_up = arctan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up + 0.0)
-            side_q6_of_q3_left_up = (
-                1.0
-                if along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_left_up = nearest_on_arc(
-                angle_q6_of_q3_left_up,
-                (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
-                0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
-            )
-            cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
-            sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
-            # what the motion changes of the pose
-            cost_q6_of_q3_left_up = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
-                    )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
-                    + (
-                        sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
-                    )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
-                )
-                *radius_q6_left
-            )
-            if cost_q6_of_q3_left_up > 1e-12 and radius_q6_left > 1e-11:
-                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            else:
-                cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
-                sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
-        if radius_q6_right > 1e-11:
-            cos_q6_before_q6_of_q3_right_up = r21_from_q1_right/length_q6_right  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right/length_q6_right
-        else:
-            cos_q6_before_q6_of_q3_right_up = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = sin(free_a6)
-        wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
-        wrist_x_from_q1_here_right_up = (
-            wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
-            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
-        )
-        wrist_y_from_q1_here_right_up = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_up
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_up
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_right_up = (
-            wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
-            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
-        )
-        if abs(value_q6_of_q3_right_up) <= size_q6_of_q3:
-            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-        else:
-            along_q6_of_q3_right_up = (
-                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_right_up = (
-                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_right_up = sqrt(
-                across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
-            )
-            if swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3:
-                level_q6_of_q3_right_up = (
-                    value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
-                    - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_right_up = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up
-                    )
-                )
-                lowest_q6_of_q3_right_up = (
-                    1.0
-                    if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up < -1.0
-                        else (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up
-                    )
-                )
-            else:
-                highest_q6_of_q3_right_up = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_right_up = -1.0
-            near_q6_of_q3_right_up = arctan2(
-                root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)),
-                highest_q6_of_q3_right_up + 0.0,
-            )
-            far_q6_of_q3_right_up = arctan2(
-                root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)),
-                lowest_q6_of_q3_right_up + 0.0,
-            )
-            centre_q6_of_q3_right_up = arctan2(across_q6_of_q3_right_up, along_q6_of_q3_right_up + 0.0)
-            angle_q6_of_q3_right_up = arctan2(sin_q6_before_q6_of_q3_right_up, cos_q6_before_q6_of_q3_right_up + 0.0)
-            side_q6_of_q3_right_up = (
-                1.0
-                if along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_right_up = nearest_on_arc(
-                angle_q6_of_q3_right_up,
-                (centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)*side_q6_of_q3_right_up),
-                0.5*far_q6_of_q3_right_up - 0.5*near_q6_of_q3_right_up,
-            )
-            cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
-            sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
-            # what the motion changes of the pose
-            cost_q6_of_q3_right_up = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
-                    )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
-                    + (
-                        sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
-                    )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
-                )
-                *radius_q6_right
-            )
-            if cost_q6_of_q3_right_up > 1e-12 and radius_q6_right > 1e-11:
-                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            else:
-                cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
-                sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
-        r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
-        r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
-        # what the unknown links must span
-        wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
-        r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
-        # what the unknown links must span
-        wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
-        reach_left_down = sqrt(
-            wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
-        )
-        # kept as a product
-        sine_square_q3_left_down = (
-            (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
-            *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
-        )
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
-        sin_q3_left_up_down = (sqrt(sine_square_q3_left_down) if sine_square_q3_left_down > 0.0 else 0.0)
-        if reach_left_down > 1e-11*machine_scale:
-            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_down = (
-                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
-            )
-            across_q2_left_up_down = (
-                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
-            )
-            length_q2_left_up_down = (
-                sqrt(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down)
-                if across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0
-                else 1.0
-            )
-            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
-            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_down = (
-                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
-            )
-            across_q2_left_down_down = (
-                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
-            )
-            length_q2_left_down_down = (
-                sqrt(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down)
-                if across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down > 0.0
-                else 1.0
-            )
-            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
-            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
-        else:
-            cos_q2_left_up_down = cos(free_a2)  # its reference where it is free
-            sin_q2_left_up_down = sin(free_a2)
-            cos_q2_left_down_down = cos_q2_left_up_down  # its reference where it is free
-            sin_q2_left_down_down = sin_q2_left_up_down
         r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
         r21_from_q1_before_q56_right_down = -r21_from_q1_before_q6_right_down*r23_from_q1_right - r33*radius_q6_right
         # what the unknown links must span
@@ -1717,10 +1508,107 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
             sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_right_up_down = cos(free_a2)  # its reference where it is free
             sin_q2_right_up_down = sin(free_a2)
             cos_q2_right_down_down = cos_q2_right_up_down  # its reference where it is free
             sin_q2_right_down_down = sin_q2_right_up_down
+        wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
+        wrist_x_from_q1_here_left_up = (
+            wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
+            + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_up
+        )
+        wrist_y_from_q1_here_left_up = (
+            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_up
+            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_up
+        )
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_left_up = (
+            wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
+            + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2*a2 - a3*a3
+        )
+        if abs(value_q6_of_q3_left_up) <= size_q6_of_q3:
+            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+        else:
+            along_q6_of_q3_left_up = (
+                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
+                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            )
+            across_q6_of_q3_left_up = (
+                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
+                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3_left_up = sqrt(
+                across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
+            )
+            if swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3:
+                level_q6_of_q3_left_up = (
+                    value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
+                    - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
+                )
+                # the arc: cosines from its centre
+                highest_q6_of_q3_left_up = (
+                    1.0
+                    if (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0
+                    else (
+                        -1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0
+                        else (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up
+                    )
+                )
+                lowest_q6_of_q3_left_up = (
+                    1.0
+                    if (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up > 1.0
+                    else (
+                        -1.0
+                        if (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up < -1.0
+                        else (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up
+                    )
+                )
+            else:
+                highest_q6_of_q3_left_up = 1.0  # the arc: cosines from its centre
+                lowest_q6_of_q3_left_up = -1.0
+            near_q6_of_q3_left_up = arctan2(
+                root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
+                highest_q6_of_q3_left_up,
+            )
+            far_q6_of_q3_left_up = arctan2(
+                root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
+                lowest_q6_of_q3_left_up,
+            )
+            centre_q6_of_q3_left_up = arctan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up)
+            angle_q6_of_q3_left_up = arctan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up)
+            side_q6_of_q3_left_up = (
+                1.0
+                if along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
+                else -1.0
+            )
+            moved_q6_of_q3_left_up = nearest_on_arc(
+                angle_q6_of_q3_left_up,
+                (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
+                0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
+            )
+            cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
+            sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
+            # what the motion changes of the pose
+            cost_q6_of_q3_left_up = (
+                sqrt(
+                    (
+                        cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
+                    )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
+                    + (
+                        sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
+                    )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
+                )
+                *radius_q6_left
+            )
+            if cost_q6_of_q3_left_up > 1e-12 and radius_q6_left > 1e-11:
+                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+            else:
+                cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
+                sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
         r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
         r21_from_q1_before_q56_left_up = r33*radius_q6_left - r21_from_q1_before_q6_left_up*r23_from_q1_left
         # what the unknown links must span
@@ -1769,10 +1657,107 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
             sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_left_up_up = cos(free_a2)  # its reference where it is free
             sin_q2_left_up_up = sin(free_a2)
             cos_q2_left_down_up = cos_q2_left_up_up  # its reference where it is free
             sin_q2_left_down_up = sin_q2_left_up_up
+        wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
+        wrist_x_from_q1_here_right_up = (
+            wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
+            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
+        )
+        wrist_y_from_q1_here_right_up = (
+            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_up
+            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_up
+        )
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_right_up = (
+            wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
+            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
+        )
+        if abs(value_q6_of_q3_right_up) <= size_q6_of_q3:
+            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+        else:
+            along_q6_of_q3_right_up = (
+                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
+                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            )
+            across_q6_of_q3_right_up = (
+                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
+                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3_right_up = sqrt(
+                across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
+            )
+            if swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3:
+                level_q6_of_q3_right_up = (
+                    value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
+                    - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
+                )
+                # the arc: cosines from its centre
+                highest_q6_of_q3_right_up = (
+                    1.0
+                    if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0
+                    else (
+                        -1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0
+                        else (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up
+                    )
+                )
+                lowest_q6_of_q3_right_up = (
+                    1.0
+                    if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up > 1.0
+                    else (
+                        -1.0
+                        if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up < -1.0
+                        else (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up
+                    )
+                )
+            else:
+                highest_q6_of_q3_right_up = 1.0  # the arc: cosines from its centre
+                lowest_q6_of_q3_right_up = -1.0
+            near_q6_of_q3_right_up = arctan2(
+                root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)),
+                highest_q6_of_q3_right_up,
+            )
+            far_q6_of_q3_right_up = arctan2(
+                root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)),
+                lowest_q6_of_q3_right_up,
+            )
+            centre_q6_of_q3_right_up = arctan2(across_q6_of_q3_right_up, along_q6_of_q3_right_up)
+            angle_q6_of_q3_right_up = arctan2(sin_q6_before_q6_of_q3_right_up, cos_q6_before_q6_of_q3_right_up)
+            side_q6_of_q3_right_up = (
+                1.0
+                if along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0
+                else -1.0
+            )
+            moved_q6_of_q3_right_up = nearest_on_arc(
+                angle_q6_of_q3_right_up,
+                (centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)*side_q6_of_q3_right_up),
+                0.5*far_q6_of_q3_right_up - 0.5*near_q6_of_q3_right_up,
+            )
+            cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
+            sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
+            # what the motion changes of the pose
+            cost_q6_of_q3_right_up = (
+                sqrt(
+                    (
+                        cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
+                    )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
+                    + (
+                        sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
+                    )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
+                )
+                *radius_q6_right
+            )
+            if cost_q6_of_q3_right_up > 1e-12 and radius_q6_right > 1e-11:
+                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            else:
+                cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
+                sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
         r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
         r21_from_q1_before_q56_right_up = r33*radius_q6_right - r21_from_q1_before_q6_right_up*r23_from_q1_right
         # what the unknown links must span
@@ -1822,15 +1807,15 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
             sin_q2_right_down_up = across_q2_right_down_up/length_q2_right_down_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_right_up_up = cos(free_a2)  # its reference where it is free
             sin_q2_right_up_up = sin(free_a2)
             cos_q2_right_down_up = cos_q2_right_up_up  # its reference where it is free
             sin_q2_right_down_up = sin_q2_right_up_up
         refusal_left_down = 0.0 if sine_square_q3_left_down >= -1e-12 else 3.0  # out of reach
-        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left + 0.0)/DEGREE  # A1: its turn
-        # A2: its turn
-        axis_a2_left_up_down = offset_a2 + arctan2(sin_q2_left_up_down, cos_q2_left_up_down + 0.0)/DEGREE
-        axis_a3_left_up_down = offset_a3 + arctan2(sin_q3_left_up_down, cos_q3_left_down + 0.0)/DEGREE  # A3: its turn
+        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left)/DEGREE  # A1: its turn
+        axis_a2_left_up_down = offset_a2 + arctan2(sin_q2_left_up_down, cos_q2_left_up_down)/DEGREE  # A2: its turn
+        axis_a3_left_up_down = offset_a3 + arctan2(sin_q3_left_up_down, cos_q3_left_down)/DEGREE  # A3: its turn
         cos_q23_left_up_down = cos_q2_left_up_down*cos_q3_left_down - sin_q2_left_up_down*sin_q3_left_up_down
         sin_q23_left_up_down = cos_q2_left_up_down*sin_q3_left_up_down + cos_q3_left_down*sin_q2_left_up_down
         # q4: what the sum q234 leaves
@@ -1842,16 +1827,13 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56_left_down*cos_q23_left_up_down
             - r22_from_q1_before_q6_left_down*sin_q23_left_up_down
         )
-        # A4: its turn
-        axis_a4_left_up_down = offset_a4 + arctan2(sin_q4_left_up_down, cos_q4_left_up_down + 0.0)/DEGREE
-        axis_a5_left_down = offset_a5 + arctan2(radius_q6_left, -r23_from_q1_left + 0.0)/DEGREE  # A5: its turn
-        axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down + 0.0)/DEGREE  # A6: its turn
+        axis_a4_left_up_down = offset_a4 + arctan2(sin_q4_left_up_down, cos_q4_left_up_down)/DEGREE  # A4: its turn
+        axis_a5_left_down = offset_a5 + arctan2(radius_q6_left, -r23_from_q1_left)/DEGREE  # A5: its turn
+        axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down)/DEGREE  # A6: its turn
         refusal_right_down = 0.0 if sine_square_q3_right_down >= -1e-12 else 3.0  # out of reach
-        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right + 0.0)/DEGREE  # A1: its turn
-        # A2: its turn
-        axis_a2_right_up_down = offset_a2 + arctan2(sin_q2_right_up_down, cos_q2_right_up_down + 0.0)/DEGREE
-        # A3: its turn
-        axis_a3_right_up_down = offset_a3 + arctan2(sin_q3_right_up_down, cos_q3_right_down + 0.0)/DEGREE
+        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right)/DEGREE  # A1: its turn
+        axis_a2_right_up_down = offset_a2 + arctan2(sin_q2_right_up_down, cos_q2_right_up_down)/DEGREE  # A2: its turn
+        axis_a3_right_up_down = offset_a3 + arctan2(sin_q3_right_up_down, cos_q3_right_down)/DEGREE  # A3: its turn
         cos_q23_right_up_down = cos_q2_right_up_down*cos_q3_right_down - sin_q2_right_up_down*sin_q3_right_up_down
         sin_q23_right_up_down = cos_q2_right_up_down*sin_q3_right_up_down + cos_q3_right_down*sin_q2_right_up_down
         # q4: what the sum q234 leaves
@@ -1863,14 +1845,12 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56_right_down*cos_q23_right_up_down
             - r22_from_q1_before_q6_right_down*sin_q23_right_up_down
         )
-        # A4: its turn
-        axis_a4_right_up_down = offset_a4 + arctan2(sin_q4_right_up_down, cos_q4_right_up_down + 0.0)/DEGREE
-        axis_a5_right_down = offset_a5 + arctan2(radius_q6_right, -r23_from_q1_right + 0.0)/DEGREE  # A5: its turn
-        axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down + 0.0)/DEGREE  # A6: its turn
+        axis_a4_right_up_down = offset_a4 + arctan2(sin_q4_right_up_down, cos_q4_right_up_down)/DEGREE  # A4: its turn
+        axis_a5_right_down = offset_a5 + arctan2(radius_q6_right, -r23_from_q1_right)/DEGREE  # A5: its turn
+        axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down)/DEGREE  # A6: its turn
         # A2: its turn
-        axis_a2_left_down_down = offset_a2 + arctan2(sin_q2_left_down_down, cos_q2_left_down_down + 0.0)/DEGREE
-        # A3: its turn
-        axis_a3_left_down_down = offset_a3 + arctan2(-sin_q3_left_up_down, cos_q3_left_down + 0.0)/DEGREE
+        axis_a2_left_down_down = offset_a2 + arctan2(sin_q2_left_down_down, cos_q2_left_down_down)/DEGREE
+        axis_a3_left_down_down = offset_a3 + arctan2(-sin_q3_left_up_down, cos_q3_left_down)/DEGREE  # A3: its turn
         cos_q23_left_down_down = cos_q2_left_down_down*cos_q3_left_down + sin_q2_left_down_down*sin_q3_left_up_down
         sin_q23_left_down_down = cos_q3_left_down*sin_q2_left_down_down - cos_q2_left_down_down*sin_q3_left_up_down
         # q4: what the sum q234 leaves
@@ -1883,11 +1863,10 @@ def unrolled(k: Constants) -> Unrolled:
             - r22_from_q1_before_q6_left_down*sin_q23_left_down_down
         )
         # A4: its turn
-        axis_a4_left_down_down = offset_a4 + arctan2(sin_q4_left_down_down, cos_q4_left_down_down + 0.0)/DEGREE
+        axis_a4_left_down_down = offset_a4 + arctan2(sin_q4_left_down_down, cos_q4_left_down_down)/DEGREE
         # A2: its turn
-        axis_a2_right_down_down = offset_a2 + arctan2(sin_q2_right_down_down, cos_q2_right_down_down + 0.0)/DEGREE
-        # A3: its turn
-        axis_a3_right_down_down = offset_a3 + arctan2(-sin_q3_right_up_down, cos_q3_right_down + 0.0)/DEGREE
+        axis_a2_right_down_down = offset_a2 + arctan2(sin_q2_right_down_down, cos_q2_right_down_down)/DEGREE
+        axis_a3_right_down_down = offset_a3 + arctan2(-sin_q3_right_up_down, cos_q3_right_down)/DEGREE  # A3: its turn
         cos_q23_right_down_down = (
             cos_q2_right_down_down*cos_q3_right_down + sin_q2_right_down_down*sin_q3_right_up_down
         )
@@ -1904,10 +1883,10 @@ def unrolled(k: Constants) -> Unrolled:
             - r22_from_q1_before_q6_right_down*sin_q23_right_down_down
         )
         # A4: its turn
-        axis_a4_right_down_down = offset_a4 + arctan2(sin_q4_right_down_down, cos_q4_right_down_down + 0.0)/DEGREE
+        axis_a4_right_down_down = offset_a4 + arctan2(sin_q4_right_down_down, cos_q4_right_down_down)/DEGREE
         refusal_left_up = 0.0 if sine_square_q3_left_up >= -1e-12 else 3.0  # out of reach
-        axis_a2_left_up_up = offset_a2 + arctan2(sin_q2_left_up_up, cos_q2_left_up_up + 0.0)/DEGREE  # A2: its turn
-        axis_a3_left_up_up = offset_a3 + arctan2(sin_q3_left_up_up, cos_q3_left_up + 0.0)/DEGREE  # A3: its turn
+        axis_a2_left_up_up = offset_a2 + arctan2(sin_q2_left_up_up, cos_q2_left_up_up)/DEGREE  # A2: its turn
+        axis_a3_left_up_up = offset_a3 + arctan2(sin_q3_left_up_up, cos_q3_left_up)/DEGREE  # A3: its turn
         cos_q23_left_up_up = cos_q2_left_up_up*cos_q3_left_up - sin_q2_left_up_up*sin_q3_left_up_up
         sin_q23_left_up_up = cos_q2_left_up_up*sin_q3_left_up_up + cos_q3_left_up*sin_q2_left_up_up
         # q4: what the sum q234 leaves
@@ -1917,12 +1896,12 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q4_left_up_up = (
             r21_from_q1_before_q56_left_up*cos_q23_left_up_up - r22_from_q1_before_q6_left_up*sin_q23_left_up_up
         )
-        axis_a4_left_up_up = offset_a4 + arctan2(sin_q4_left_up_up, cos_q4_left_up_up + 0.0)/DEGREE  # A4: its turn
-        axis_a5_left_up = offset_a5 + arctan2(-radius_q6_left, -r23_from_q1_left + 0.0)/DEGREE  # A5: its turn
-        axis_a6_left_up = offset_a6 + arctan2(sin_q6_left_up, cos_q6_left_up + 0.0)/DEGREE  # A6: its turn
+        axis_a4_left_up_up = offset_a4 + arctan2(sin_q4_left_up_up, cos_q4_left_up_up)/DEGREE  # A4: its turn
+        axis_a5_left_up = offset_a5 + arctan2(-radius_q6_left, -r23_from_q1_left)/DEGREE  # A5: its turn
+        axis_a6_left_up = offset_a6 + arctan2(sin_q6_left_up, cos_q6_left_up)/DEGREE  # A6: its turn
         refusal_right_up = 0.0 if sine_square_q3_right_up >= -1e-12 else 3.0  # out of reach
-        axis_a2_right_up_up = offset_a2 + arctan2(sin_q2_right_up_up, cos_q2_right_up_up + 0.0)/DEGREE  # A2: its turn
-        axis_a3_right_up_up = offset_a3 + arctan2(sin_q3_right_up_up, cos_q3_right_up + 0.0)/DEGREE  # A3: its turn
+        axis_a2_right_up_up = offset_a2 + arctan2(sin_q2_right_up_up, cos_q2_right_up_up)/DEGREE  # A2: its turn
+        axis_a3_right_up_up = offset_a3 + arctan2(sin_q3_right_up_up, cos_q3_right_up)/DEGREE  # A3: its turn
         cos_q23_right_up_up = cos_q2_right_up_up*cos_q3_right_up - sin_q2_right_up_up*sin_q3_right_up_up
         sin_q23_right_up_up = cos_q2_right_up_up*sin_q3_right_up_up + cos_q3_right_up*sin_q2_right_up_up
         # q4: what the sum q234 leaves
@@ -1932,12 +1911,11 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q4_right_up_up = (
             r21_from_q1_before_q56_right_up*cos_q23_right_up_up - r22_from_q1_before_q6_right_up*sin_q23_right_up_up
         )
-        axis_a4_right_up_up = offset_a4 + arctan2(sin_q4_right_up_up, cos_q4_right_up_up + 0.0)/DEGREE  # A4: its turn
-        axis_a5_right_up = offset_a5 + arctan2(-radius_q6_right, -r23_from_q1_right + 0.0)/DEGREE  # A5: its turn
-        axis_a6_right_up = offset_a6 + arctan2(sin_q6_right_up, cos_q6_right_up + 0.0)/DEGREE  # A6: its turn
-        # A2: its turn
-        axis_a2_left_down_up = offset_a2 + arctan2(sin_q2_left_down_up, cos_q2_left_down_up + 0.0)/DEGREE
-        axis_a3_left_down_up = offset_a3 + arctan2(-sin_q3_left_up_up, cos_q3_left_up + 0.0)/DEGREE  # A3: its turn
+        axis_a4_right_up_up = offset_a4 + arctan2(sin_q4_right_up_up, cos_q4_right_up_up)/DEGREE  # A4: its turn
+        axis_a5_right_up = offset_a5 + arctan2(-radius_q6_right, -r23_from_q1_right)/DEGREE  # A5: its turn
+        axis_a6_right_up = offset_a6 + arctan2(sin_q6_right_up, cos_q6_right_up)/DEGREE  # A6: its turn
+        axis_a2_left_down_up = offset_a2 + arctan2(sin_q2_left_down_up, cos_q2_left_down_up)/DEGREE  # A2: its turn
+        axis_a3_left_down_up = offset_a3 + arctan2(-sin_q3_left_up_up, cos_q3_left_up)/DEGREE  # A3: its turn
         cos_q23_left_down_up = cos_q2_left_down_up*cos_q3_left_up + sin_q2_left_down_up*sin_q3_left_up_up
         sin_q23_left_down_up = cos_q3_left_up*sin_q2_left_down_up - cos_q2_left_down_up*sin_q3_left_up_up
         # q4: what the sum q234 leaves
@@ -1947,11 +1925,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q4_left_down_up = (
             r21_from_q1_before_q56_left_up*cos_q23_left_down_up - r22_from_q1_before_q6_left_up*sin_q23_left_down_up
         )
-        # A4: its turn
-        axis_a4_left_down_up = offset_a4 + arctan2(sin_q4_left_down_up, cos_q4_left_down_up + 0.0)/DEGREE
-        # A2: its turn
-        axis_a2_right_down_up = offset_a2 + arctan2(sin_q2_right_down_up, cos_q2_right_down_up + 0.0)/DEGREE
-        axis_a3_right_down_up = offset_a3 + arctan2(-sin_q3_right_up_up, cos_q3_right_up + 0.0)/DEGREE  # A3: its turn
+        axis_a4_left_down_up = offset_a4 + arctan2(sin_q4_left_down_up, cos_q4_left_down_up)/DEGREE  # A4: its turn
+        axis_a2_right_down_up = offset_a2 + arctan2(sin_q2_right_down_up, cos_q2_right_down_up)/DEGREE  # A2: its turn
+        axis_a3_right_down_up = offset_a3 + arctan2(-sin_q3_right_up_up, cos_q3_right_up)/DEGREE  # A3: its turn
         cos_q23_right_down_up = cos_q2_right_down_up*cos_q3_right_up + sin_q2_right_down_up*sin_q3_right_up_up
         sin_q23_right_down_up = cos_q3_right_up*sin_q2_right_down_up - cos_q2_right_down_up*sin_q3_right_up_up
         # q4: what the sum q234 leaves
@@ -1963,8 +1939,7 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56_right_up*cos_q23_right_down_up
             - r22_from_q1_before_q6_right_up*sin_q23_right_down_up
         )
-        # A4: its turn
-        axis_a4_right_down_up = offset_a4 + arctan2(sin_q4_right_down_up, cos_q4_right_down_up + 0.0)/DEGREE
+        axis_a4_right_down_up = offset_a4 + arctan2(sin_q4_right_down_up, cos_q4_right_down_up)/DEGREE  # A4: its turn
         return (
             (
                 (
@@ -2126,10 +2101,10 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
                 lowest_q6_of_q3 = -1.0
-            near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3 + 0.0)
-            far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3 + 0.0)
-            centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3 + 0.0)
-            angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3 + 0.0)
+            near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
+            far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
+            centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
+            angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
             side_q6_of_q3 = (
                 1.0
                 if along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0
@@ -2186,16 +2161,16 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2 = cos(free_a2)  # its reference where it is free
             sin_q2 = sin(free_a2)
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)/DEGREE  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2)/DEGREE  # A2: its turn
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3)/DEGREE  # A3: its turn
         cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
         sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
         cos_q4 = r22_from_q1_before_q6*cos_q23 + r21_from_q1_before_q56*sin_q23  # q4: what the sum q234 leaves
         sin_q4 = r21_from_q1_before_q56*cos_q23 - r22_from_q1_before_q6*sin_q23
-        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4 + 0.0)/DEGREE  # A4: its turn
-        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5 + 0.0)/DEGREE  # A5: its turn
-        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
+        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4)/DEGREE  # A4: its turn
+        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5)/DEGREE  # A5: its turn
+        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6)/DEGREE  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     return Unrolled(every_branch, branches, branch)

@@ -169,16 +169,16 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        axis_a4_upright = offset_a4 + arctan2(sin_a4_upright, cos_a4_upright + 0.0)/DEGREE  # A4: its turn
-        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4 + 0.0)/DEGREE  # A5: its turn
+        axis_a4_upright = offset_a4 + arctan2(sin_a4_upright, cos_a4_upright)/DEGREE  # A4: its turn
+        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4)/DEGREE  # A5: its turn
         r11_from_a4_upright = r11*cos_a4_upright - r31*sin_a4_upright
         r12_from_a4_upright = r12*cos_a4_upright - r32*sin_a4_upright
-        axis_a6_upright = offset_a6 + arctan2(-r12_from_a4_upright, r11_from_a4_upright + 0.0)/DEGREE  # A6: its turn
-        axis_a4_flipped = offset_a4 + arctan2(sin_a4_flipped, cos_a4_flipped + 0.0)/DEGREE  # A4: its turn
-        axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4 + 0.0)/DEGREE  # A5: its turn
+        axis_a6_upright = offset_a6 + arctan2(-r12_from_a4_upright, r11_from_a4_upright)/DEGREE  # A6: its turn
+        axis_a4_flipped = offset_a4 + arctan2(sin_a4_flipped, cos_a4_flipped)/DEGREE  # A4: its turn
+        axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4)/DEGREE  # A5: its turn
         r11_from_a4_flipped = r11*cos_a4_flipped - r31*sin_a4_flipped
         r12_from_a4_flipped = r12*cos_a4_flipped - r32*sin_a4_flipped
-        axis_a6_flipped = offset_a6 + arctan2(-r12_from_a4_flipped, r11_from_a4_flipped + 0.0)/DEGREE  # A6: its turn
+        axis_a6_flipped = offset_a6 + arctan2(-r12_from_a4_flipped, r11_from_a4_flipped)/DEGREE  # A6: its turn
         return (
             (axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright),
             (axis_a1, axis_a2, axis_a3, axis_a4_flipped, axis_a5_flipped, axis_a6_flipped),
@@ -205,14 +205,14 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4 + 0.0)/DEGREE  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4)/DEGREE  # A4: its turn
         a4_radius_of_a5 = radius_a4*sigma_wrist
         sin_a5 = -r23
-        axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5 + 0.0)/DEGREE  # A5: its turn
+        axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5)/DEGREE  # A5: its turn
         r11_from_a4 = r11*cos_a4 - r31*sin_a4
         r12_from_a4 = r12*cos_a4 - r32*sin_a4
         sin_a6 = -r12_from_a4
-        axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4 + 0.0)/DEGREE  # A6: its turn
+        axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4)/DEGREE  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     return Unrolled(every_branch, branches, branch)

@@ -88,16 +88,20 @@ def unrolled(k: Constants) -> Unrolled:
         # out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(3.0,)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
         if distance_q1 > 1e-11*machine_scale:
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             # its reference where it is free
             cos_q1_front = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1
             sin_q1_front = (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1
+            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)  # its reference where it is free
             sin_q1_front = sin(free_a1)
+            cos_q1_back = cos_q1_front  # its reference where it is free
+            sin_q1_back = sin_q1_front
         wrist_x_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
@@ -111,7 +115,6 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
         cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 - d4*sin_swing_q3_front_down/effective_q3
         sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3 + d4*cos_swing_q3_front/effective_q3
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_q3_front_up = a3*cos_swing_q3_front/effective_q3 + d4*sin_swing_q3_front_down/effective_q3
         sin_q3_front_up = d4*cos_swing_q3_front/effective_q3 - a3*sin_swing_q3_front_down/effective_q3
         if reach_front > 1e-11*machine_scale:
@@ -142,60 +145,11 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_front_down = cos(free_a2)  # its reference where it is free
             sin_q2_front_down = sin(free_a2)
             cos_q2_front_up = cos_q2_front_down  # its reference where it is free
             sin_q2_front_up = sin_q2_front_down
-        if distance_q1 > 1e-11*machine_scale:
-            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
-        else:
-            cos_q1_back = cos(free_a1)  # its reference where it is free
-            sin_q1_back = sin(free_a1)
-        wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
-        reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
-        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
-        # kept as a product
-        sine_square_q3_back = (
-            (effective_q3 + reach_back - a2)*(a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
-            *(a2 + reach_back - effective_q3)/(swing_scale_q3*swing_scale_q3)
-        )
-        sin_swing_q3_back_down = -(sqrt(sine_square_q3_back) if sine_square_q3_back > 0.0 else 0.0)
-        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3 - d4*sin_swing_q3_back_down/effective_q3
-        sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3 + d4*cos_swing_q3_back/effective_q3
-        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3 + d4*sin_swing_q3_back_down/effective_q3
-        sin_q3_back_up = d4*cos_swing_q3_back/effective_q3 - a3*sin_swing_q3_back_down/effective_q3
-        if reach_back > 1e-11*machine_scale:
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_back_down = (
-                sqrt(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down)
-                if across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0
-                else 1.0
-            )
-            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
-            sin_q2_back_down = across_q2_back_down/length_q2_back_down
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_back_up = (
-                sqrt(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up)
-                if across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0
-                else 1.0
-            )
-            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
-            sin_q2_back_up = across_q2_back_up/length_q2_back_up
-        else:
-            cos_q2_back_down = cos(free_a2)  # its reference where it is free
-            sin_q2_back_down = sin(free_a2)
-            cos_q2_back_up = cos_q2_back_down  # its reference where it is free
-            sin_q2_back_up = sin_q2_back_down
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
         r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
         sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
         cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
@@ -211,6 +165,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
             sin_q4_front_down_up = -sin_q4_front_down_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
             cos_q4_front_down_down = cos(free_a4)  # its reference where it is free
             sin_q4_front_down_down = sin(free_a4)
             cos_q4_front_down_up = cos_q4_front_down_down  # its reference where it is free
@@ -226,6 +181,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q4_front_up_up = -cos_q4_front_up_down  # its reference where it is free
             sin_q4_front_up_up = -sin_q4_front_up_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
             cos_q4_front_up_down = cos(free_a4)  # its reference where it is free
             sin_q4_front_up_down = sin(free_a4)
             cos_q4_front_up_up = cos_q4_front_up_down  # its reference where it is free
@@ -380,6 +336,50 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_front_up_down = 3.0  # limits of A4, limits of A5, limits of A6
             refusal_front_down_up = 3.0  # limits of A4, limits of A5, limits of A6
             refusal_front_up_up = 3.0  # limits of A4, limits of A5, limits of A6
+        wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
+        reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
+        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        # kept as a product
+        sine_square_q3_back = (
+            (effective_q3 + reach_back - a2)*(a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
+            *(a2 + reach_back - effective_q3)/(swing_scale_q3*swing_scale_q3)
+        )
+        sin_swing_q3_back_down = -(sqrt(sine_square_q3_back) if sine_square_q3_back > 0.0 else 0.0)
+        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3 - d4*sin_swing_q3_back_down/effective_q3
+        sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3 + d4*cos_swing_q3_back/effective_q3
+        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3 + d4*sin_swing_q3_back_down/effective_q3
+        sin_q3_back_up = d4*cos_swing_q3_back/effective_q3 - a3*sin_swing_q3_back_down/effective_q3
+        if reach_back > 1e-11*machine_scale:
+            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
+            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
+            length_q2_back_down = (
+                sqrt(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down)
+                if across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0
+                else 1.0
+            )
+            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
+            sin_q2_back_down = across_q2_back_down/length_q2_back_down
+            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
+            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations
+            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
+            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
+            length_q2_back_up = (
+                sqrt(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up)
+                if across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0
+                else 1.0
+            )
+            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
+            sin_q2_back_up = across_q2_back_up/length_q2_back_up
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            cos_q2_back_down = cos(free_a2)  # its reference where it is free
+            sin_q2_back_down = sin(free_a2)
+            cos_q2_back_up = cos_q2_back_down  # its reference where it is free
+            sin_q2_back_up = sin_q2_back_down
         r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
         sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
         cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
@@ -395,6 +395,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q4_back_down_up = -cos_q4_back_down_down  # its reference where it is free
             sin_q4_back_down_up = -sin_q4_back_down_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
             cos_q4_back_down_down = cos(free_a4)  # its reference where it is free
             sin_q4_back_down_down = sin(free_a4)
             cos_q4_back_down_up = cos_q4_back_down_down  # its reference where it is free
@@ -410,6 +411,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q4_back_up_up = -cos_q4_back_up_down  # its reference where it is free
             sin_q4_back_up_up = -sin_q4_back_up_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
             cos_q4_back_up_down = cos(free_a4)  # its reference where it is free
             sin_q4_back_up_down = sin(free_a4)
             cos_q4_back_up_up = cos_q4_back_up_down  # its reference where it is free
@@ -638,16 +640,20 @@ def unrolled(k: Constants) -> Unrolled:
         # out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(None,)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
         if distance_q1 > 1e-11*machine_scale:
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             # its reference where it is free
             cos_q1_front = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1
             sin_q1_front = (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1
+            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)  # its reference where it is free
             sin_q1_front = sin(free_a1)
+            cos_q1_back = cos_q1_front  # its reference where it is free
+            sin_q1_back = sin_q1_front
         wrist_x_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
@@ -657,7 +663,6 @@ def unrolled(k: Constants) -> Unrolled:
             (effective_q3 + reach_front - a2)*(a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
             *(a2 + reach_front - effective_q3)/(swing_scale_q3*swing_scale_q3)
         )
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
         sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
         cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 - d4*sin_swing_q3_front_down/effective_q3
@@ -692,16 +697,31 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_front_down = cos(free_a2)  # its reference where it is free
             sin_q2_front_down = sin(free_a2)
             cos_q2_front_up = cos_q2_front_down  # its reference where it is free
             sin_q2_front_up = sin_q2_front_down
-        if distance_q1 > 1e-11*machine_scale:
-            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
+        r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
+        sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
+        cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
+        r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
+        r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
+        # q4: direction and distance of a point
+        radius_q4_front_down = sqrt(
+            r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
+        )
+        if radius_q4_front_down > 1e-11:
+            cos_q4_front_down_down = -r13_from_q123_front_down/radius_q4_front_down  # its reference where it is free
+            sin_q4_front_down_down = r23_from_q1_front/radius_q4_front_down
+            cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
+            sin_q4_front_down_up = -sin_q4_front_down_down
         else:
-            cos_q1_back = cos(free_a1)  # its reference where it is free
-            sin_q1_back = sin(free_a1)
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            cos_q4_front_down_down = cos(free_a4)  # its reference where it is free
+            sin_q4_front_down_down = sin(free_a4)
+            cos_q4_front_down_up = cos_q4_front_down_down  # its reference where it is free
+            sin_q4_front_down_up = sin_q4_front_down_down
         wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
         reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -741,30 +761,11 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
             sin_q2_back_up = across_q2_back_up/length_q2_back_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_back_down = cos(free_a2)  # its reference where it is free
             sin_q2_back_down = sin(free_a2)
             cos_q2_back_up = cos_q2_back_down  # its reference where it is free
             sin_q2_back_up = sin_q2_back_down
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
-        r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
-        sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
-        cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
-        r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
-        r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
-        # q4: direction and distance of a point
-        radius_q4_front_down = sqrt(
-            r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
-        )
-        if radius_q4_front_down > 1e-11:
-            cos_q4_front_down_down = -r13_from_q123_front_down/radius_q4_front_down  # its reference where it is free
-            sin_q4_front_down_down = r23_from_q1_front/radius_q4_front_down
-            cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
-            sin_q4_front_down_up = -sin_q4_front_down_down
-        else:
-            cos_q4_front_down_down = cos(free_a4)  # its reference where it is free
-            sin_q4_front_down_down = sin(free_a4)
-            cos_q4_front_down_up = cos_q4_front_down_down  # its reference where it is free
-            sin_q4_front_down_up = sin_q4_front_down_down
         r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
         sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
         cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
@@ -780,6 +781,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q4_back_down_up = -cos_q4_back_down_down  # its reference where it is free
             sin_q4_back_down_up = -sin_q4_back_down_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
             cos_q4_back_down_down = cos(free_a4)  # its reference where it is free
             sin_q4_back_down_down = sin(free_a4)
             cos_q4_back_down_up = cos_q4_back_down_down  # its reference where it is free
@@ -795,6 +797,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q4_front_up_up = -cos_q4_front_up_down  # its reference where it is free
             sin_q4_front_up_up = -sin_q4_front_up_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
             cos_q4_front_up_down = cos(free_a4)  # its reference where it is free
             sin_q4_front_up_down = sin(free_a4)
             cos_q4_front_up_up = cos_q4_front_up_down  # its reference where it is free
@@ -810,19 +813,20 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q4_back_up_up = -cos_q4_back_up_down  # its reference where it is free
             sin_q4_back_up_up = -sin_q4_back_up_down
         else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
             cos_q4_back_up_down = cos(free_a4)  # its reference where it is free
             sin_q4_back_up_down = sin(free_a4)
             cos_q4_back_up_up = cos_q4_back_up_down  # its reference where it is free
             sin_q4_back_up_up = sin_q4_back_up_down
         refusal_front = 0.0 if sine_square_q3_front >= -1e-12 else 3.0  # out of reach
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front + 0.0)/DEGREE  # A1: its turn
-        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down + 0.0)/DEGREE  # A2: its turn
-        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down + 0.0)/DEGREE  # A3: its turn
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)/DEGREE  # A1: its turn
+        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down)/DEGREE  # A2: its turn
+        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down)/DEGREE  # A3: its turn
         # A4: its turn
-        axis_a4_front_down_down = offset_a4 + arctan2(sin_q4_front_down_down, cos_q4_front_down_down + 0.0)/DEGREE
+        axis_a4_front_down_down = offset_a4 + arctan2(sin_q4_front_down_down, cos_q4_front_down_down)/DEGREE
         r23_from_q123_front_down = -r13_from_q1_front*cos_q23_front_down - r33*sin_q23_front_down
         # A5: its turn
-        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4_front_down, -r23_from_q123_front_down + 0.0)/DEGREE
+        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4_front_down, -r23_from_q123_front_down)/DEGREE
         r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
         r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
         r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down
@@ -837,17 +841,17 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # A6: its turn
         axis_a6_front_down_down = (
-            offset_a6 + arctan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down + 0.0)/DEGREE
+            offset_a6 + arctan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down)/DEGREE
         )
         refusal_back = 0.0 if sine_square_q3_back >= -1e-12 else 3.0  # out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back + 0.0)/DEGREE  # A1: its turn
-        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down + 0.0)/DEGREE  # A2: its turn
-        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down + 0.0)/DEGREE  # A3: its turn
+        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)/DEGREE  # A1: its turn
+        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down)/DEGREE  # A2: its turn
+        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down)/DEGREE  # A3: its turn
         # A4: its turn
-        axis_a4_back_down_down = offset_a4 + arctan2(sin_q4_back_down_down, cos_q4_back_down_down + 0.0)/DEGREE
+        axis_a4_back_down_down = offset_a4 + arctan2(sin_q4_back_down_down, cos_q4_back_down_down)/DEGREE
         r23_from_q123_back_down = -r13_from_q1_back*cos_q23_back_down - r33*sin_q23_back_down
         # A5: its turn
-        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4_back_down, -r23_from_q123_back_down + 0.0)/DEGREE
+        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4_back_down, -r23_from_q123_back_down)/DEGREE
         r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
         r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
@@ -862,15 +866,14 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # A6: its turn
         axis_a6_back_down_down = (
-            offset_a6 + arctan2(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down + 0.0)/DEGREE
+            offset_a6 + arctan2(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down)/DEGREE
         )
-        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up + 0.0)/DEGREE  # A2: its turn
-        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up + 0.0)/DEGREE  # A3: its turn
-        # A4: its turn
-        axis_a4_front_up_down = offset_a4 + arctan2(sin_q4_front_up_down, cos_q4_front_up_down + 0.0)/DEGREE
+        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up)/DEGREE  # A2: its turn
+        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up)/DEGREE  # A3: its turn
+        axis_a4_front_up_down = offset_a4 + arctan2(sin_q4_front_up_down, cos_q4_front_up_down)/DEGREE  # A4: its turn
         r23_from_q123_front_up = -r13_from_q1_front*cos_q23_front_up - r33*sin_q23_front_up
         # A5: its turn
-        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4_front_up, -r23_from_q123_front_up + 0.0)/DEGREE
+        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4_front_up, -r23_from_q123_front_up)/DEGREE
         r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
         r21_from_q1234_front_up_down = (
             -r21_from_q1_front*cos_q4_front_up_down - r11_from_q123_front_up*sin_q4_front_up_down
@@ -880,16 +883,12 @@ def unrolled(k: Constants) -> Unrolled:
             -r22_from_q1_front*cos_q4_front_up_down - r12_from_q123_front_up*sin_q4_front_up_down
         )
         # A6: its turn
-        axis_a6_front_up_down = (
-            offset_a6 + arctan2(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down + 0.0)/DEGREE
-        )
-        axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up + 0.0)/DEGREE  # A2: its turn
-        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up + 0.0)/DEGREE  # A3: its turn
-        # A4: its turn
-        axis_a4_back_up_down = offset_a4 + arctan2(sin_q4_back_up_down, cos_q4_back_up_down + 0.0)/DEGREE
+        axis_a6_front_up_down = offset_a6 + arctan2(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down)/DEGREE
+        axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up)/DEGREE  # A2: its turn
+        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up)/DEGREE  # A3: its turn
+        axis_a4_back_up_down = offset_a4 + arctan2(sin_q4_back_up_down, cos_q4_back_up_down)/DEGREE  # A4: its turn
         r23_from_q123_back_up = -r13_from_q1_back*cos_q23_back_up - r33*sin_q23_back_up
-        # A5: its turn
-        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4_back_up, -r23_from_q123_back_up + 0.0)/DEGREE
+        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4_back_up, -r23_from_q123_back_up)/DEGREE  # A5: its turn
         r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
         r21_from_q1234_back_up_down = (
             -r21_from_q1_back*cos_q4_back_up_down - r11_from_q123_back_up*sin_q4_back_up_down
@@ -899,13 +898,10 @@ def unrolled(k: Constants) -> Unrolled:
             -r22_from_q1_back*cos_q4_back_up_down - r12_from_q123_back_up*sin_q4_back_up_down
         )
         # A6: its turn
-        axis_a6_back_up_down = (
-            offset_a6 + arctan2(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down + 0.0)/DEGREE
-        )
-        # A4: its turn
-        axis_a4_front_down_up = offset_a4 + arctan2(sin_q4_front_down_up, cos_q4_front_down_up + 0.0)/DEGREE
+        axis_a6_back_up_down = offset_a6 + arctan2(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down)/DEGREE
+        axis_a4_front_down_up = offset_a4 + arctan2(sin_q4_front_down_up, cos_q4_front_down_up)/DEGREE  # A4: its turn
         # A5: its turn
-        axis_a5_front_down_up = offset_a5 + arctan2(-radius_q4_front_down, -r23_from_q123_front_down + 0.0)/DEGREE
+        axis_a5_front_down_up = offset_a5 + arctan2(-radius_q4_front_down, -r23_from_q123_front_down)/DEGREE
         r21_from_q1234_front_down_up = (
             -r21_from_q1_front*cos_q4_front_down_up - r11_from_q123_front_down*sin_q4_front_down_up
         )
@@ -913,13 +909,10 @@ def unrolled(k: Constants) -> Unrolled:
             -r22_from_q1_front*cos_q4_front_down_up - r12_from_q123_front_down*sin_q4_front_down_up
         )
         # A6: its turn
-        axis_a6_front_down_up = (
-            offset_a6 + arctan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up + 0.0)/DEGREE
-        )
-        # A4: its turn
-        axis_a4_back_down_up = offset_a4 + arctan2(sin_q4_back_down_up, cos_q4_back_down_up + 0.0)/DEGREE
+        axis_a6_front_down_up = offset_a6 + arctan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up)/DEGREE
+        axis_a4_back_down_up = offset_a4 + arctan2(sin_q4_back_down_up, cos_q4_back_down_up)/DEGREE  # A4: its turn
         # A5: its turn
-        axis_a5_back_down_up = offset_a5 + arctan2(-radius_q4_back_down, -r23_from_q123_back_down + 0.0)/DEGREE
+        axis_a5_back_down_up = offset_a5 + arctan2(-radius_q4_back_down, -r23_from_q123_back_down)/DEGREE
         r21_from_q1234_back_down_up = (
             -r21_from_q1_back*cos_q4_back_down_up - r11_from_q123_back_down*sin_q4_back_down_up
         )
@@ -927,23 +920,19 @@ def unrolled(k: Constants) -> Unrolled:
             -r22_from_q1_back*cos_q4_back_down_up - r12_from_q123_back_down*sin_q4_back_down_up
         )
         # A6: its turn
-        axis_a6_back_down_up = (
-            offset_a6 + arctan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up + 0.0)/DEGREE
-        )
-        axis_a4_front_up_up = offset_a4 + arctan2(sin_q4_front_up_up, cos_q4_front_up_up + 0.0)/DEGREE  # A4: its turn
-        # A5: its turn
-        axis_a5_front_up_up = offset_a5 + arctan2(-radius_q4_front_up, -r23_from_q123_front_up + 0.0)/DEGREE
+        axis_a6_back_down_up = offset_a6 + arctan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up)/DEGREE
+        axis_a4_front_up_up = offset_a4 + arctan2(sin_q4_front_up_up, cos_q4_front_up_up)/DEGREE  # A4: its turn
+        axis_a5_front_up_up = offset_a5 + arctan2(-radius_q4_front_up, -r23_from_q123_front_up)/DEGREE  # A5: its turn
         r21_from_q1234_front_up_up = -r21_from_q1_front*cos_q4_front_up_up - r11_from_q123_front_up*sin_q4_front_up_up
         r22_from_q1234_front_up_up = -r22_from_q1_front*cos_q4_front_up_up - r12_from_q123_front_up*sin_q4_front_up_up
         # A6: its turn
-        axis_a6_front_up_up = offset_a6 + arctan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up + 0.0)/DEGREE
-        axis_a4_back_up_up = offset_a4 + arctan2(sin_q4_back_up_up, cos_q4_back_up_up + 0.0)/DEGREE  # A4: its turn
-        # A5: its turn
-        axis_a5_back_up_up = offset_a5 + arctan2(-radius_q4_back_up, -r23_from_q123_back_up + 0.0)/DEGREE
+        axis_a6_front_up_up = offset_a6 + arctan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up)/DEGREE
+        axis_a4_back_up_up = offset_a4 + arctan2(sin_q4_back_up_up, cos_q4_back_up_up)/DEGREE  # A4: its turn
+        axis_a5_back_up_up = offset_a5 + arctan2(-radius_q4_back_up, -r23_from_q123_back_up)/DEGREE  # A5: its turn
         r21_from_q1234_back_up_up = -r21_from_q1_back*cos_q4_back_up_up - r11_from_q123_back_up*sin_q4_back_up_up
         r22_from_q1234_back_up_up = -r22_from_q1_back*cos_q4_back_up_up - r12_from_q123_back_up*sin_q4_back_up_up
         # A6: its turn
-        axis_a6_back_up_up = offset_a6 + arctan2(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up + 0.0)/DEGREE
+        axis_a6_back_up_up = offset_a6 + arctan2(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up)/DEGREE
         return (
             (
                 (
@@ -1083,14 +1072,14 @@ def unrolled(k: Constants) -> Unrolled:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             cos_q4 = cos(free_a4)  # its reference where it is free
             sin_q4 = sin(free_a4)
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
-        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4 + 0.0)/DEGREE  # A4: its turn
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)/DEGREE  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2)/DEGREE  # A2: its turn
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3)/DEGREE  # A3: its turn
+        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4)/DEGREE  # A4: its turn
         q4_radius_of_q5 = radius_q4*sigma_hand
         r23_from_q123 = -r13_from_q1*cos_q23 - r33*sin_q23
         cos_q5 = -r23_from_q123  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5)/DEGREE  # A5: its turn
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
@@ -1099,7 +1088,7 @@ def unrolled(k: Constants) -> Unrolled:
         r12_from_q1 = r12*cos_q1 + r22*sin_q1
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         r22_from_q1234 = -r22_from_q1*cos_q4 - r12_from_q123*sin_q4
-        axis_a6 = offset_a6 + arctan2(r21_from_q1234, r22_from_q1234 + 0.0)/DEGREE  # A6: its turn
+        axis_a6 = offset_a6 + arctan2(r21_from_q1234, r22_from_q1234)/DEGREE  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     return Unrolled(every_branch, branches, branch)

@@ -73,7 +73,7 @@ def unrolled(k: Constants) -> Unrolled:
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
-        axis_c = offset_c + arctan2(sin_heading, cos_heading + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(sin_heading, cos_heading)/DEGREE  # C: its turn
         return (
             (axis_c,),
         )
@@ -90,7 +90,7 @@ def unrolled(k: Constants) -> Unrolled:
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
-        axis_c = offset_c + arctan2(sin_heading, cos_heading + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(sin_heading, cos_heading)/DEGREE  # C: its turn
         return (axis_c,)
 
     return Unrolled(every_branch, branches, branch)

@@ -91,8 +91,8 @@ def unrolled(k: Constants) -> Unrolled:
             cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
             sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
         axis_r = offset_r + radius_phi
-        axis_theta = offset_theta + arctan2(sin_theta, cos_theta + 0.0)/DEGREE  # Theta: its turn
-        axis_phi = offset_phi + arctan2(sin_phi, cos_phi + 0.0)/DEGREE
+        axis_theta = offset_theta + arctan2(sin_theta, cos_theta)/DEGREE  # Theta: its turn
+        axis_phi = offset_phi + arctan2(sin_phi, cos_phi)/DEGREE
         return (
             (axis_r, axis_theta, axis_phi),
         )
@@ -118,8 +118,8 @@ def unrolled(k: Constants) -> Unrolled:
             cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
             sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
         axis_r = offset_r + radius_phi
-        axis_theta = offset_theta + arctan2(sin_theta, cos_theta + 0.0)/DEGREE  # Theta: its turn
-        axis_phi = offset_phi + arctan2(sin_phi, cos_phi + 0.0)/DEGREE
+        axis_theta = offset_theta + arctan2(sin_theta, cos_theta)/DEGREE  # Theta: its turn
+        axis_phi = offset_phi + arctan2(sin_phi, cos_phi)/DEGREE
         return (axis_r, axis_theta, axis_phi)
 
     return Unrolled(every_branch, branches, branch)

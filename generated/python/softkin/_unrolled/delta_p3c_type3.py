@@ -635,9 +635,9 @@ def unrolled(k: Constants) -> Unrolled:
             if type2_rods_coplanar_outward_outward_outward >= min_type2_margin
             else 3.0
         )
-        axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward + 0.0)/DEGREE  # A1: its turn
-        axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward + 0.0)/DEGREE  # A2: its turn
-        axis_a3_outward = offset_a3 + arctan2(sin_a3_outward, cos_a3_outward + 0.0)/DEGREE  # A3: its turn
+        axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward)/DEGREE  # A1: its turn
+        axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward)/DEGREE  # A2: its turn
+        axis_a3_outward = offset_a3 + arctan2(sin_a3_outward, cos_a3_outward)/DEGREE  # A3: its turn
         cos_a1_inward = along_a1*cos_swing_a1/divisor_a1 - z*sin_swing_a1_outward/divisor_a1
         # rod 1
         pivot_1_x_inward = (
@@ -667,7 +667,7 @@ def unrolled(k: Constants) -> Unrolled:
             if type2_rods_coplanar_inward_outward_outward >= min_type2_margin
             else 3.0
         )
-        axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward + 0.0)/DEGREE  # A1: its turn
+        axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward)/DEGREE  # A1: its turn
         cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - z*sin_swing_a2_outward/divisor_a2
         # rod 2
         pivot_2_x_inward = (
@@ -697,7 +697,7 @@ def unrolled(k: Constants) -> Unrolled:
             if type2_rods_coplanar_outward_inward_outward >= min_type2_margin
             else 3.0
         )
-        axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward + 0.0)/DEGREE  # A2: its turn
+        axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward)/DEGREE  # A2: its turn
         type2_rods_coplanar_inward_inward_outward = (
             assembly_sign
             *(
@@ -738,7 +738,7 @@ def unrolled(k: Constants) -> Unrolled:
             if type2_rods_coplanar_outward_outward_inward >= min_type2_margin
             else 3.0
         )
-        axis_a3_inward = offset_a3 + arctan2(sin_a3_inward, cos_a3_inward + 0.0)/DEGREE  # A3: its turn
+        axis_a3_inward = offset_a3 + arctan2(sin_a3_inward, cos_a3_inward)/DEGREE  # A3: its turn
         type2_rods_coplanar_inward_outward_inward = (
             assembly_sign
             *(
@@ -915,9 +915,9 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)/DEGREE  # A3: its turn
         return (axis_a1, axis_a2, axis_a3)
 
     return Unrolled(every_branch, branches, branch)

@@ -102,7 +102,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
         sin_r = direction_r*sin_heading
-        axis_r = offset_r + arctan2(sin_r, cos_heading + 0.0)/DEGREE  # R: its turn
+        axis_r = offset_r + arctan2(sin_r, cos_heading)/DEGREE  # R: its turn
         return (
             (axis_x, axis_y, axis_z, axis_r),
         )
@@ -123,7 +123,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
         sin_r = direction_r*sin_heading
-        axis_r = offset_r + arctan2(sin_r, cos_heading + 0.0)/DEGREE  # R: its turn
+        axis_r = offset_r + arctan2(sin_r, cos_heading)/DEGREE  # R: its turn
         return (axis_x, axis_y, axis_z, axis_r)
 
     return Unrolled(every_branch, branches, branch)

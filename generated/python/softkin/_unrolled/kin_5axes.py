@@ -155,10 +155,10 @@ def unrolled(k: Constants) -> Unrolled:
         axis_y = offset_y + wrist_y
         wrist_z = z - r33*tool_length*tool_side
         axis_z = offset_z + wrist_z
-        axis_a_positive = offset_a + arctan2(sin_a_positive, cos_a_positive + 0.0)/DEGREE  # A: its turn
-        axis_b_positive = offset_b + arctan2(radius_a, r33 + 0.0)/DEGREE  # B: its turn
-        axis_a_negative = offset_a + arctan2(sin_a_negative, cos_a_negative + 0.0)/DEGREE  # A: its turn
-        axis_b_negative = offset_b + arctan2(-radius_a, r33 + 0.0)/DEGREE  # B: its turn
+        axis_a_positive = offset_a + arctan2(sin_a_positive, cos_a_positive)/DEGREE  # A: its turn
+        axis_b_positive = offset_b + arctan2(radius_a, r33)/DEGREE  # B: its turn
+        axis_a_negative = offset_a + arctan2(sin_a_negative, cos_a_negative)/DEGREE  # A: its turn
+        axis_b_negative = offset_b + arctan2(-radius_a, r33)/DEGREE  # B: its turn
         return (
             (axis_x, axis_y, axis_z, axis_a_positive, axis_b_positive),
             (axis_x, axis_y, axis_z, axis_a_negative, axis_b_negative),
@@ -187,9 +187,9 @@ def unrolled(k: Constants) -> Unrolled:
         axis_y = offset_y + wrist_y
         wrist_z = z - r33*tool_length*tool_side
         axis_z = offset_z + wrist_z
-        axis_a = offset_a + arctan2(sin_a, cos_a + 0.0)/DEGREE  # A: its turn
+        axis_a = offset_a + arctan2(sin_a, cos_a)/DEGREE  # A: its turn
         a_radius_of_b = radius_a*sigma_roll
-        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0)/DEGREE  # B: its turn
+        axis_b = offset_b + arctan2(a_radius_of_b, r33)/DEGREE  # B: its turn
         return (axis_x, axis_y, axis_z, axis_a, axis_b)
 
     return Unrolled(every_branch, branches, branch)

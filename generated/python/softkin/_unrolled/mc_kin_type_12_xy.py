@@ -926,12 +926,12 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_right_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_right_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
-        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left_left, cos_a2_left_left + 0.0)/DEGREE  # A2: its turn
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
-        axis_a2_right_left = offset_a2 + arctan2(sin_a2_right_left, cos_a2_right_left + 0.0)/DEGREE  # A2: its turn
-        axis_a2_left_right = offset_a2 + arctan2(sin_a2_left_right, cos_a2_left_right + 0.0)/DEGREE  # A2: its turn
-        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right_right, cos_a2_right_right + 0.0)/DEGREE  # A2: its turn
+        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
+        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left_left, cos_a2_left_left)/DEGREE  # A2: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)/DEGREE  # A1: its turn
+        axis_a2_right_left = offset_a2 + arctan2(sin_a2_right_left, cos_a2_right_left)/DEGREE  # A2: its turn
+        axis_a2_left_right = offset_a2 + arctan2(sin_a2_left_right, cos_a2_left_right)/DEGREE  # A2: its turn
+        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right_right, cos_a2_right_right)/DEGREE  # A2: its turn
         return (
             ((axis_a1_left, axis_a2_left_left) if refusal_left_left == 0.0 else None),
             ((axis_a1_right, axis_a2_right_left) if refusal_right_left == 0.0 else None),
@@ -1085,8 +1085,8 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
         return (axis_a1, axis_a2)
 
     return Unrolled(every_branch, branches, branch)

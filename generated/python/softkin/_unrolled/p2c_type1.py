@@ -219,8 +219,8 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_outward = 0.0 if type2_arms_aligned_outward_outward >= min_type2_margin else 3.0
-        axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward + 0.0)/DEGREE  # A1: its turn
-        axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward + 0.0)/DEGREE  # A2: its turn
+        axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward)/DEGREE  # A1: its turn
+        axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward)/DEGREE  # A2: its turn
         cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + y*sin_swing_a1_outward/divisor_a1
         pivot_1_x_inward = tcp_displacement - displacement - inner_arm*cos_a1_inward  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
@@ -232,7 +232,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_outward = 0.0 if type2_arms_aligned_inward_outward >= min_type2_margin else 3.0
-        axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward + 0.0)/DEGREE  # A1: its turn
+        axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward)/DEGREE  # A1: its turn
         cos_a2_inward = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2_outward/divisor_a2
         pivot_2_x_inward = displacement + inner_arm*cos_a2_inward - tcp_displacement  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
@@ -244,7 +244,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = 0.0 if type2_arms_aligned_outward_inward >= min_type2_margin else 3.0
-        axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward + 0.0)/DEGREE  # A2: its turn
+        axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward)/DEGREE  # A2: its turn
         type2_arms_aligned_inward_inward = (
             assembly_sign*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)/(outer_arm*outer_arm)
         )
@@ -314,8 +314,8 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
         return (axis_a1, axis_a2)
 
     return Unrolled(every_branch, branches, branch)

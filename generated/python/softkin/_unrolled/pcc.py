@@ -174,16 +174,16 @@ def unrolled(k: Constants) -> Unrolled:
             sin_a1_right = sin(free_a1)
             cos_a1_left = cos_a1_right  # its reference where it is free
             sin_a1_left = sin_a1_right
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)/DEGREE  # A1: its turn
         # a2: what the sum a2_from_a1 leaves
         cos_a2_right = cos_a1_right*cos_a2_from_a1 - sin_a1_right*sin_a2_from_a1_right
         sin_a2_right = cos_a1_right*sin_a2_from_a1_right + cos_a2_from_a1*sin_a1_right
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
+        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)/DEGREE  # A2: its turn
+        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
         # a2: what the sum a2_from_a1 leaves
         cos_a2_left = cos_a1_left*cos_a2_from_a1 + sin_a1_left*sin_a2_from_a1_right
         sin_a2_left = cos_a2_from_a1*sin_a1_left - cos_a1_left*sin_a2_from_a1_right
-        axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)/DEGREE  # A2: its turn
         return (
             (axis_a1_right, axis_a2_right),
             (axis_a1_left, axis_a2_left),
@@ -225,10 +225,10 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_a1 = cos(free_a1)  # its reference where it is free
             sin_a1 = sin(free_a1)
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
         cos_a2 = cos_a1*cos_a2_from_a1 - sin_a1*sin_a2_from_a1  # a2: what the sum a2_from_a1 leaves
         sin_a2 = cos_a1*sin_a2_from_a1 + cos_a2_from_a1*sin_a1
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
         return (axis_a1, axis_a2)
 
     return Unrolled(every_branch, branches, branch)

@@ -74,7 +74,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             cos_c = cos(free_c)  # its reference where it is free
             sin_c = sin(free_c)
-        axis_c = offset_c + arctan2(sin_c, cos_c + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(sin_c, cos_c)/DEGREE  # C: its turn
         axis_r = offset_r + radius_c
         axis_z = offset_z + z
         return (
@@ -93,7 +93,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             cos_c = cos(free_c)  # its reference where it is free
             sin_c = sin(free_c)
-        axis_c = offset_c + arctan2(sin_c, cos_c + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(sin_c, cos_c)/DEGREE  # C: its turn
         axis_r = offset_r + radius_c
         axis_z = offset_z + z
         return (axis_c, axis_r, axis_z)

@@ -57,19 +57,22 @@ def unrolled(k: Constants) -> Unrolled:
         # out of reach
         if not (sine_square_q1 >= -1e-12):
             return 4*(3.0,)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
         if distance_q1 > 1e-11*machine_scale:
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
             sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
+            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)  # its reference where it is free
             sin_q1_front = sin(free_a1)
+            cos_q1_back = cos_q1_front  # its reference where it is free
+            sin_q1_back = sin_q1_front
         wrist_x_from_q1_front = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
         # kept as a product
         sine_square_q3_front = (
@@ -110,16 +113,49 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_front_down = cos(free_a2)  # its reference where it is free
             sin_q2_front_down = sin(free_a2)
             cos_q2_front_up = cos_q2_front_down  # its reference where it is free
             sin_q2_front_up = sin_q2_front_down
-        if distance_q1 > 1e-11*machine_scale:
-            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
+        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
+            axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
+        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
+            axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
+        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
+            axis_a1_front = nearest_period(axis_a1_front, open_a1)
+        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
+            axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
+        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
+            axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
+        if sine_square_q3_front >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
+            # limits of A2, limits of A3
+            refusal_front_down = (
+                0.0
+                if (axis_a2_front_down >= lowest_a2) and (axis_a3_front_down >= lowest_a3) and (
+                    axis_a2_front_down <= highest_a2
+                ) and (axis_a3_front_down <= highest_a3)
+                else 3.0
+            )
+            # limits of A2, limits of A3
+            refusal_front_up = (
+                0.0
+                if (axis_a2_front_up >= lowest_a2) and (axis_a3_front_up >= lowest_a3) and (
+                    axis_a2_front_up <= highest_a2
+                ) and (axis_a3_front_up <= highest_a3)
+                else 3.0
+            )
         else:
-            cos_q1_back = cos(free_a1)  # its reference where it is free
-            sin_q1_back = sin(free_a1)
+            refusal_front_down = 3.0  # limits of A2, limits of A3
+            refusal_front_up = 3.0  # limits of A2, limits of A3
         wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
         reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
@@ -159,48 +195,11 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
             sin_q2_back_up = across_q2_back_up/length_q2_back_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_back_down = cos(free_a2)  # its reference where it is free
             sin_q2_back_down = sin(free_a2)
             cos_q2_back_up = cos_q2_back_down  # its reference where it is free
             sin_q2_back_up = sin_q2_back_down
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down + 0.0)/DEGREE  # A2: its turn
-        if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
-            axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down + 0.0)/DEGREE  # A3: its turn
-        if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
-            axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front + 0.0)/DEGREE  # A1: its turn
-        if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
-            axis_a1_front = nearest_period(axis_a1_front, open_a1)
-        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up + 0.0)/DEGREE  # A2: its turn
-        if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
-            axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
-        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up + 0.0)/DEGREE  # A3: its turn
-        if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
-            axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
-        if sine_square_q3_front >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
-            # limits of A2, limits of A3
-            refusal_front_down = (
-                0.0
-                if (axis_a2_front_down >= lowest_a2) and (axis_a3_front_down >= lowest_a3) and (
-                    axis_a2_front_down <= highest_a2
-                ) and (axis_a3_front_down <= highest_a3)
-                else 3.0
-            )
-            # limits of A2, limits of A3
-            refusal_front_up = (
-                0.0
-                if (axis_a2_front_up >= lowest_a2) and (axis_a3_front_up >= lowest_a3) and (
-                    axis_a2_front_up <= highest_a2
-                ) and (axis_a3_front_up <= highest_a3)
-                else 3.0
-            )
-        else:
-            refusal_front_down = 3.0  # limits of A2, limits of A3
-            refusal_front_up = 3.0  # limits of A2, limits of A3
         axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
             axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
@@ -258,15 +257,19 @@ def unrolled(k: Constants) -> Unrolled:
         # out of reach
         if not (sine_square_q1 >= -1e-12):
             return 4*(None,)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
         if distance_q1 > 1e-11*machine_scale:
+            cos_swing_q1 = -d3/divisor_q1
+            sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
             sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
+            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)  # its reference where it is free
             sin_q1_front = sin(free_a1)
+            cos_q1_back = cos_q1_front  # its reference where it is free
+            sin_q1_back = sin_q1_front
         wrist_x_from_q1_front = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
@@ -276,7 +279,6 @@ def unrolled(k: Constants) -> Unrolled:
             *(a2 + effective_q3_2 - reach_front)*(a2 + reach_front - effective_q3_2)
             /(swing_scale_q3_2*swing_scale_q3_2)
         )
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
         sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
         cos_q3_front_down = a3*cos_swing_q3_front/effective_q3_2 - d4*sin_swing_q3_front_down/effective_q3_2
@@ -311,16 +313,11 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_front_down = cos(free_a2)  # its reference where it is free
             sin_q2_front_down = sin(free_a2)
             cos_q2_front_up = cos_q2_front_down  # its reference where it is free
             sin_q2_front_up = sin_q2_front_down
-        if distance_q1 > 1e-11*machine_scale:
-            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
-        else:
-            cos_q1_back = cos(free_a1)  # its reference where it is free
-            sin_q1_back = sin(free_a1)
         wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
         reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -360,22 +357,23 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
             sin_q2_back_up = across_q2_back_up/length_q2_back_up
         else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2_back_down = cos(free_a2)  # its reference where it is free
             sin_q2_back_down = sin(free_a2)
             cos_q2_back_up = cos_q2_back_down  # its reference where it is free
             sin_q2_back_up = sin_q2_back_down
         refusal_front = 0.0 if sine_square_q3_front >= -1e-12 else 3.0  # out of reach
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front + 0.0)/DEGREE  # A1: its turn
-        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down + 0.0)/DEGREE  # A2: its turn
-        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down + 0.0)/DEGREE  # A3: its turn
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)/DEGREE  # A1: its turn
+        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down)/DEGREE  # A2: its turn
+        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down)/DEGREE  # A3: its turn
         refusal_back = 0.0 if sine_square_q3_back >= -1e-12 else 3.0  # out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back + 0.0)/DEGREE  # A1: its turn
-        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down + 0.0)/DEGREE  # A2: its turn
-        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down + 0.0)/DEGREE  # A3: its turn
-        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up + 0.0)/DEGREE  # A2: its turn
-        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up + 0.0)/DEGREE  # A3: its turn
-        axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up + 0.0)/DEGREE  # A2: its turn
-        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up + 0.0)/DEGREE  # A3: its turn
+        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)/DEGREE  # A1: its turn
+        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down)/DEGREE  # A2: its turn
+        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down)/DEGREE  # A3: its turn
+        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up)/DEGREE  # A2: its turn
+        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up)/DEGREE  # A3: its turn
+        axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up)/DEGREE  # A2: its turn
+        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up)/DEGREE  # A3: its turn
         return (
             ((axis_a1_front, axis_a2_front_down, axis_a3_front_down) if refusal_front == 0.0 else None),
             ((axis_a1_back, axis_a2_back_down, axis_a3_back_down) if refusal_back == 0.0 else None),
@@ -436,9 +434,9 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2 = cos(free_a2)  # its reference where it is free
             sin_q2 = sin(free_a2)
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)/DEGREE  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2)/DEGREE  # A2: its turn
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3)/DEGREE  # A3: its turn
         return (axis_a1, axis_a2, axis_a3)
 
     return Unrolled(every_branch, branches, branch)

@@ -220,21 +220,21 @@ def unrolled(k: Constants) -> Unrolled:
             sin_a1_right = sin(free_a1)
             cos_a1_left = cos_a1_right  # its reference where it is free
             sin_a1_left = sin_a1_right
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)/DEGREE  # A1: its turn
+        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2)/DEGREE  # A2: its turn
         cos_a12_right = cos_a1_right*cos_a2 - sin_a1_right*sin_a2_right
         sin_a12_right = cos_a1_right*sin_a2_right + cos_a2*sin_a1_right
         cos_a3_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading  # a3: what the sum a123 leaves
         sin_a3_right = cos_a12_right*sin_heading - cos_heading*sin_a12_right
-        axis_a3_right = offset_a3 + arctan2(sin_a3_right, cos_a3_right + 0.0)/DEGREE  # A3: its turn
+        axis_a3_right = offset_a3 + arctan2(sin_a3_right, cos_a3_right)/DEGREE  # A3: its turn
         axis_z = offset_z + z
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
-        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
+        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2)/DEGREE  # A2: its turn
         cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
         sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
         cos_a3_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading  # a3: what the sum a123 leaves
         sin_a3_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
-        axis_a3_left = offset_a3 + arctan2(sin_a3_left, cos_a3_left + 0.0)/DEGREE  # A3: its turn
+        axis_a3_left = offset_a3 + arctan2(sin_a3_left, cos_a3_left)/DEGREE  # A3: its turn
         return (
             (axis_a1_right, axis_a2_right, axis_a3_right, axis_z),
             (axis_a1_left, axis_a2_left, axis_a3_left, axis_z),
@@ -283,13 +283,13 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_a1 = cos(free_a1)  # its reference where it is free
             sin_a1 = sin(free_a1)
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
         cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
         sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
         cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
         sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)/DEGREE  # A3: its turn
         axis_z = offset_z + z
         return (axis_a1, axis_a2, axis_a3, axis_z)
 

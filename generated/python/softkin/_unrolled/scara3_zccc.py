@@ -221,20 +221,20 @@ def unrolled(k: Constants) -> Unrolled:
             cos_a2_left = cos_a2_right  # its reference where it is free
             sin_a2_left = sin_a2_right
         axis_a1 = offset_a1 + z
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
-        axis_a3_right = offset_a3 + arctan2(sin_a3_right, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)/DEGREE  # A2: its turn
+        axis_a3_right = offset_a3 + arctan2(sin_a3_right, cos_a3)/DEGREE  # A3: its turn
         cos_a23_right = cos_a2_right*cos_a3 - sin_a2_right*sin_a3_right
         sin_a23_right = cos_a2_right*sin_a3_right + cos_a3*sin_a2_right
         cos_a4_right = cos_a23_right*cos_heading + sin_a23_right*sin_heading  # a4: what the sum a234 leaves
         sin_a4_right = cos_a23_right*sin_heading - cos_heading*sin_a23_right
-        axis_a4_right = offset_a4 + arctan2(sin_a4_right, cos_a4_right + 0.0)/DEGREE  # A4: its turn
-        axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
-        axis_a3_left = offset_a3 + arctan2(-sin_a3_right, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a4_right = offset_a4 + arctan2(sin_a4_right, cos_a4_right)/DEGREE  # A4: its turn
+        axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)/DEGREE  # A2: its turn
+        axis_a3_left = offset_a3 + arctan2(-sin_a3_right, cos_a3)/DEGREE  # A3: its turn
         cos_a23_left = cos_a2_left*cos_a3 + sin_a2_left*sin_a3_right
         sin_a23_left = cos_a3*sin_a2_left - cos_a2_left*sin_a3_right
         cos_a4_left = cos_a23_left*cos_heading + sin_a23_left*sin_heading  # a4: what the sum a234 leaves
         sin_a4_left = cos_a23_left*sin_heading - cos_heading*sin_a23_left
-        axis_a4_left = offset_a4 + arctan2(sin_a4_left, cos_a4_left + 0.0)/DEGREE  # A4: its turn
+        axis_a4_left = offset_a4 + arctan2(sin_a4_left, cos_a4_left)/DEGREE  # A4: its turn
         return (
             (axis_a1, axis_a2_right, axis_a3_right, axis_a4_right),
             (axis_a1, axis_a2_left, axis_a3_left, axis_a4_left),
@@ -284,13 +284,13 @@ def unrolled(k: Constants) -> Unrolled:
             cos_a2 = cos(free_a2)  # its reference where it is free
             sin_a2 = sin(free_a2)
         axis_a1 = offset_a1 + z
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)/DEGREE  # A3: its turn
         cos_a23 = cos_a2*cos_a3 - sin_a2*sin_a3
         sin_a23 = cos_a2*sin_a3 + cos_a3*sin_a2
         cos_a4 = cos_a23*cos_heading + sin_a23*sin_heading  # a4: what the sum a234 leaves
         sin_a4 = cos_a23*sin_heading - cos_heading*sin_a23
-        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4 + 0.0)/DEGREE  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4)/DEGREE  # A4: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
     return Unrolled(every_branch, branches, branch)

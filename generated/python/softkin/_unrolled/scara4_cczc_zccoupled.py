@@ -220,8 +220,8 @@ def unrolled(k: Constants) -> Unrolled:
             sin_a1_right = sin(free_a1)
             cos_a1_left = cos_a1_right  # its reference where it is free
             sin_a1_left = sin_a1_right
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)/DEGREE  # A1: its turn
+        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2)/DEGREE  # A2: its turn
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
@@ -230,19 +230,19 @@ def unrolled(k: Constants) -> Unrolled:
         # a4: linear pair in the cosine of the heading and sine of the heading equations
         cos_a4_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading
         sin_a4_right = cos_a12_right*sin_heading - cos_heading*sin_a12_right
-        axis_a4_right = offset_a4 + arctan2(sin_a4_right, cos_a4_right + 0.0)/DEGREE  # A4: its turn
+        axis_a4_right = offset_a4 + arctan2(sin_a4_right, cos_a4_right)/DEGREE  # A4: its turn
         a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
         # a3: affine in the z equation
         a3_right = z + a4_right*pitch_zc/(360.0*DEGREE) - a4_right*gear_coupling/DEGREE
         axis_a3_right = a3_right + offset_a3
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
-        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
+        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2)/DEGREE  # A2: its turn
         cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
         sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
         # a4: linear pair in the cosine of the heading and sine of the heading equations
         cos_a4_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading
         sin_a4_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
-        axis_a4_left = offset_a4 + arctan2(sin_a4_left, cos_a4_left + 0.0)/DEGREE  # A4: its turn
+        axis_a4_left = offset_a4 + arctan2(sin_a4_left, cos_a4_left)/DEGREE  # A4: its turn
         a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
         a3_left = z + a4_left*pitch_zc/(360.0*DEGREE) - a4_left*gear_coupling/DEGREE  # a3: affine in the z equation
         axis_a3_left = a3_left + offset_a3
@@ -290,8 +290,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_a1 = cos(free_a1)  # its reference where it is free
             sin_a1 = sin(free_a1)
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
@@ -300,7 +300,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a4: linear pair in the cosine of the heading and sine of the heading equations
         cos_a4 = cos_a12*cos_heading + sin_a12*sin_heading
         sin_a4 = cos_a12*sin_heading - cos_heading*sin_a12
-        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4 + 0.0)/DEGREE  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4)/DEGREE  # A4: its turn
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc/(360.0*DEGREE) - a4*gear_coupling/DEGREE  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3

@@ -89,7 +89,6 @@ def unrolled(k: Constants) -> Unrolled:
         # out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > 1e-11*machine_scale:
@@ -115,6 +114,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_a1_right = cos(free_a1)  # its reference where it is free
             sin_a1_right = sin(free_a1)
             cos_a1_left = cos_a1_right  # its reference where it is free
@@ -124,7 +124,6 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
-        ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
         axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
@@ -133,6 +132,8 @@ def unrolled(k: Constants) -> Unrolled:
             open_a2_right = mid_a2  # A2: where its turn is open
             open_a2_left = mid_a2  # A2: where its turn is open
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
             open_a2_right = offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: where its turn is open
             open_a2_left = offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: where its turn is open
@@ -150,6 +151,8 @@ def unrolled(k: Constants) -> Unrolled:
             open_a3_right = mid_a3  # A3: where its turn is open
             open_a3_left = mid_a3  # A3: where its turn is open
         else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
             free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
             # A3: where its turn is open
@@ -266,10 +269,10 @@ def unrolled(k: Constants) -> Unrolled:
             sin_a1_right = sin(free_a1)
             cos_a1_left = cos_a1_right  # its reference where it is free
             sin_a1_left = sin_a1_right
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)/DEGREE  # A1: its turn
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
         # A2: its turn
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2 + 0.0)/DEGREE - coupling_12*motor_a1_right/DEGREE
+        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2)/DEGREE - coupling_12*motor_a1_right/DEGREE
         cos_a12_right = cos_a1_right*cos_a2 - sin_a1_right*sin_a2_right
         sin_a12_right = cos_a1_right*sin_a2_right + cos_a2*sin_a1_right
         cos_a3_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading  # a3: what the sum a123 leaves
@@ -277,13 +280,13 @@ def unrolled(k: Constants) -> Unrolled:
         motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
         # A3: its turn
         axis_a3_right = (
-            offset_a3 + arctan2(sin_a3_right, cos_a3_right + 0.0)/DEGREE
+            offset_a3 + arctan2(sin_a3_right, cos_a3_right)/DEGREE
             - (coupling_13*motor_a1_right + coupling_23*motor_a2_right)/DEGREE
         )
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
         # A2: its turn
-        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2 + 0.0)/DEGREE - coupling_12*motor_a1_left/DEGREE
+        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2)/DEGREE - coupling_12*motor_a1_left/DEGREE
         cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
         sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
         cos_a3_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading  # a3: what the sum a123 leaves
@@ -291,7 +294,7 @@ def unrolled(k: Constants) -> Unrolled:
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
         # A3: its turn
         axis_a3_left = (
-            offset_a3 + arctan2(sin_a3_left, cos_a3_left + 0.0)/DEGREE
+            offset_a3 + arctan2(sin_a3_left, cos_a3_left)/DEGREE
             - (coupling_13*motor_a1_left + coupling_23*motor_a2_left)/DEGREE
         )
         return (
@@ -345,18 +348,16 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_a1 = cos(free_a1)  # its reference where it is free
             sin_a1 = sin(free_a1)
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
         cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
         sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
         cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
         sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         # A3: its turn
-        axis_a3 = (
-            offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
-        )
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
         return (axis_a1, axis_a2, axis_a3)
 
     return Unrolled(every_branch, branches, branch)

@@ -115,10 +115,10 @@ def unrolled(k: Constants) -> Unrolled:
             sin_a_positive = sin(free_a)
             cos_a_negative = cos_a_positive  # its reference where it is free
             sin_a_negative = sin_a_positive
-        axis_a_positive = offset_a + arctan2(sin_a_positive, cos_a_positive + 0.0)/DEGREE  # A: its turn
-        axis_b_positive = offset_b + arctan2(radius_a, r33 + 0.0)/DEGREE  # B: its turn
-        axis_a_negative = offset_a + arctan2(sin_a_negative, cos_a_negative + 0.0)/DEGREE  # A: its turn
-        axis_b_negative = offset_b + arctan2(-radius_a, r33 + 0.0)/DEGREE  # B: its turn
+        axis_a_positive = offset_a + arctan2(sin_a_positive, cos_a_positive)/DEGREE  # A: its turn
+        axis_b_positive = offset_b + arctan2(radius_a, r33)/DEGREE  # B: its turn
+        axis_a_negative = offset_a + arctan2(sin_a_negative, cos_a_negative)/DEGREE  # A: its turn
+        axis_b_negative = offset_b + arctan2(-radius_a, r33)/DEGREE  # B: its turn
         return (
             (axis_a_positive, axis_b_positive),
             (axis_a_negative, axis_b_negative),
@@ -141,9 +141,9 @@ def unrolled(k: Constants) -> Unrolled:
             free_a = (ref_a - offset_a)*DEGREE
             cos_a = cos(free_a)  # its reference where it is free
             sin_a = sin(free_a)
-        axis_a = offset_a + arctan2(sin_a, cos_a + 0.0)/DEGREE  # A: its turn
+        axis_a = offset_a + arctan2(sin_a, cos_a)/DEGREE  # A: its turn
         a_radius_of_b = radius_a*sigma_roll
-        axis_b = offset_b + arctan2(a_radius_of_b, r33 + 0.0)/DEGREE  # B: its turn
+        axis_b = offset_b + arctan2(a_radius_of_b, r33)/DEGREE  # B: its turn
         return (axis_a, axis_b)
 
     return Unrolled(every_branch, branches, branch)

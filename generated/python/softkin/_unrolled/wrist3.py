@@ -128,14 +128,14 @@ def unrolled(k: Constants) -> Unrolled:
             sin_c_up = sin_c_down
         r22_before_c_down = r22*cos_c_down + r21*sin_c_down
         r12_before_c_down = r12*cos_c_down + r11*sin_c_down
-        axis_a_down = offset_a + arctan2(-r12_before_c_down, r22_before_c_down + 0.0)/DEGREE  # A: its turn
-        axis_b_down = offset_b + arctan2(radius_c, r33 + 0.0)/DEGREE  # B: its turn
-        axis_c_down = offset_c + arctan2(sin_c_down, cos_c_down + 0.0)/DEGREE  # C: its turn
+        axis_a_down = offset_a + arctan2(-r12_before_c_down, r22_before_c_down)/DEGREE  # A: its turn
+        axis_b_down = offset_b + arctan2(radius_c, r33)/DEGREE  # B: its turn
+        axis_c_down = offset_c + arctan2(sin_c_down, cos_c_down)/DEGREE  # C: its turn
         r22_before_c_up = r22*cos_c_up + r21*sin_c_up
         r12_before_c_up = r12*cos_c_up + r11*sin_c_up
-        axis_a_up = offset_a + arctan2(-r12_before_c_up, r22_before_c_up + 0.0)/DEGREE  # A: its turn
-        axis_b_up = offset_b + arctan2(-radius_c, r33 + 0.0)/DEGREE  # B: its turn
-        axis_c_up = offset_c + arctan2(sin_c_up, cos_c_up + 0.0)/DEGREE  # C: its turn
+        axis_a_up = offset_a + arctan2(-r12_before_c_up, r22_before_c_up)/DEGREE  # A: its turn
+        axis_b_up = offset_b + arctan2(-radius_c, r33)/DEGREE  # B: its turn
+        axis_c_up = offset_c + arctan2(sin_c_up, cos_c_up)/DEGREE  # C: its turn
         return (
             (axis_a_down, axis_b_down, axis_c_down),
             (axis_a_up, axis_b_up, axis_c_up),
@@ -159,10 +159,10 @@ def unrolled(k: Constants) -> Unrolled:
         r22_before_c = r22*cos_c + r21*sin_c
         r12_before_c = r12*cos_c + r11*sin_c
         sin_a = -r12_before_c
-        axis_a = offset_a + arctan2(sin_a, r22_before_c + 0.0)/DEGREE  # A: its turn
+        axis_a = offset_a + arctan2(sin_a, r22_before_c)/DEGREE  # A: its turn
         c_radius_of_b = radius_c*sigma_hand
-        axis_b = offset_b + arctan2(c_radius_of_b, r33 + 0.0)/DEGREE  # B: its turn
-        axis_c = offset_c + arctan2(sin_c, cos_c + 0.0)/DEGREE  # C: its turn
+        axis_b = offset_b + arctan2(c_radius_of_b, r33)/DEGREE  # B: its turn
+        axis_c = offset_c + arctan2(sin_c, cos_c)/DEGREE  # C: its turn
         return (axis_a, axis_b, axis_c)
 
     return Unrolled(every_branch, branches, branch)

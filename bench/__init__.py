@@ -1,0 +1,1 @@
+"""How fast, how exact and how complete: the generated Python against peers, on the same poses in one run."""

@@ -1,0 +1,108 @@
+"""`make bench`: times of all contenders, taken in turns, with the worst error and the lost poses beside each."""
+
+from __future__ import annotations
+
+import gc
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from bench.chain import KR6_R900, UR5, Array, Table, errors
+from bench.contenders import ALL, BATCH, ONE, Contender, contenders
+
+ROUNDS, BATCH_ROUNDS = 60, 8
+SCALAR, ROWS = 200, 100_000
+SOLVED = 1e-6
+"""An answer is right where it misses by less (metres, parts of one); a pose without one is lost."""
+
+
+@dataclass(frozen=True)
+class Quality:
+    """What the answers to some poses are worth."""
+
+    worst: float
+    """By how much the worst of the right answers misses."""
+    lost: int
+    """Poses without a right answer."""
+    answers: float
+    """Right ones a pose."""
+    wrong: int
+    """Answers that are none."""
+
+
+def main() -> None:
+    """Measure and print."""
+    print(f"Python {sys.version.split()[0]}, NumPy {np.__version__}; the least of {ROUNDS} rounds (batches: {BATCH_ROUNDS}), in turns.")
+    print(f"{SCALAR} random poses a call each, {ROWS} rows a batch; lost: of {SCALAR} random, and of 4096 of the 90-degree grid.")
+    for table in (KR6_R900, UR5):
+        report(table)
+
+
+def report(table: Table) -> None:
+    """All tasks of a robot."""
+    random = np.random.default_rng(5)
+    few, many = (table.frames(random.uniform(-170.0, 170.0, (n, 6))) for n in (SCALAR, ROWS))
+    grid = table.frames(np.array(list(product((-90.0, 0.0, 90.0, 180.0), repeat=6))))
+    found = contenders(table)
+    times = measured(found, few, many)
+    print(f"\n{table.name}")
+    print(f"{'':52}{'':17}{'random poses':>28}{'90-degree grid':>28}")
+    columns = f"{'worst':>9}{'answers':>8}{'lost':>5}{'wrong':>6}"
+    print(f"{'':52}{'µs a pose':>10}{'ratio':>7}{columns}{columns}")
+    for task in (ALL, ONE, BATCH):
+        peers = [times[c.name] for c in found if not c.is_ours and c.task == (ALL if task == ONE else task)]
+        print(f"{task}; ratio to the fastest peer" + (" with all solutions" if task == ONE else ""))
+        for contender in (c for c in found if c.task == task):
+            took = times[contender.name]
+            good, gridded = (quality(table, contender, poses) for poses in (few, grid))
+            print(
+                f"  {contender.name:50}{took:10.2f}{took / min(peers):7.2f}"
+                + "".join(f"{q.worst:9.0e}{q.answers:8.2f}{q.lost:5d}{q.wrong:6d}" for q in (good, gridded))
+            )
+
+
+def measured(found: Sequence[Contender], few: Array, many: Array) -> dict[str, float]:
+    """Microseconds a pose, the least of all rounds; in each round every contender has its turn."""
+    inputs = {c.name: c.inputs(many if c.task == BATCH else few) for c in found}
+    least = {c.name: np.inf for c in found}
+    for k in range(ROUNDS):
+        for contender in found:
+            if contender.task == BATCH and k >= BATCH_ROUNDS:
+                continue
+            gc.collect()
+            gc.disable()
+            took = _once(contender, inputs[contender.name])
+            gc.enable()
+            least[contender.name] = min(least[contender.name], took)
+    return least
+
+
+def _once(contender: Contender, given: Any) -> float:
+    call = contender.call
+    start = time.perf_counter()
+    if contender.task == BATCH:
+        call(given)
+        return (time.perf_counter() - start) / ROWS * 1e6
+    for one in given:
+        call(one)
+    return (time.perf_counter() - start) / len(given) * 1e6
+
+
+def quality(table: Table, contender: Contender, poses: Array) -> Quality:
+    """What a contender's answers to poses are worth, by the table."""
+    given = contender.inputs(poses)
+    result = contender.call(given) if contender.task == BATCH else [contender.call(one) for one in given]
+    axes, pose = contender.answers(result)
+    missed = errors(table, axes, poses[pose])
+    is_right = missed < SOLVED
+    lost = len(poses) - len(np.unique(pose[is_right]))
+    return Quality(float(missed[is_right].max(initial=0.0)), lost, is_right.sum() / len(poses), int(np.sum(~is_right)))
+
+
+if __name__ == "__main__":
+    main()

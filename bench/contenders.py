@@ -1,0 +1,178 @@
+"""Who takes part: for one task each, how the poses are put in, the call that is timed, and what came out.
+
+Every contender gets the poses in the form that suits it best, made before the clock runs. Answers are rows of axes with the
+index of their pose, in degrees of the Denavit-Hartenberg table, and are read when the clock has stopped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import py_opw_kinematics as opw
+import softkin
+from eaik.IK_DH import DhRobot
+from scipy.spatial.transform import RigidTransform
+
+from bench.chain import KR6_R900, UR5, Array, Table
+
+Answers = tuple[Array, Array]
+"""Axes (M, 6), and the pose (M,) that each row is for."""
+ALL, ONE, BATCH = "all solutions, one call", "one solution, one call", "a batch"
+
+
+@dataclass(frozen=True)
+class Contender:
+    """One way to solve a task. A batch is one call for all poses, any other task one call a pose."""
+
+    name: str
+    task: str
+    inputs: Callable[[Array], Any]
+    call: Callable[[Any], Any]
+    answers: Callable[[Any], Answers]
+    is_ours: bool = False
+
+
+def contenders(table: Table) -> list[Contender]:
+    """All of a robot."""
+    found = [*_ours(table), *_eaik(table)]
+    return [*found, *_opw(table)] if table is KR6_R900 else found
+
+
+def robot_of(table: Table) -> softkin.Mechanism:
+    """Our machine, in millimetres."""
+    a, d = ([1000.0 * v for v in values] for values in (table.a, table.d))
+    if table is UR5:
+        return softkin.Ac6ThreeParallel(d1=d[0], a2=a[1], a3=a[2], d4=d[3], d5=d[4], d6=d[5])
+    return softkin.ArticulatedRobot6DOF(d1=d[0], a1=a[0], a2=a[1], a3=a[2], d4=d[3], d6=d[5])
+
+
+def _ours(table: Table) -> list[Contender]:
+    robot = robot_of(table)
+
+    def frames(poses: Array) -> list[Any]:
+        return [softkin.Frame(*f) for f in zip(_tuples(1000.0 * poses[:, :3, 3]), _tuples(poses[:, :3, :3]), strict=True)]
+
+    def arrays(poses: Array) -> tuple[Array, Array]:
+        return np.ascontiguousarray(1000.0 * poses[:, :3, 3]), np.ascontiguousarray(poses[:, :3, :3])
+
+    def chosen(poses: Array) -> list[Any]:
+        """Frames with the first branch that reaches them."""
+        signs = [s for _, s in softkin._configuration.slots((0, 0, 0))]
+        found = ((f, robot.branches(f)) for f in frames(poses))
+        return [(f, next((s for s, a in zip(signs, axes, strict=True) if a is not None), signs[0])) for f, axes in found]
+
+    def named(poses: Array) -> list[Any]:
+        return [(f, (*(1 if s > 0 else 2 for s in signs), 0, 0, 0, 0, 0, 0)) for f, signs in chosen(poses)]
+
+    def configured(poses: Array) -> tuple[Array, Array, Array]:
+        bytes_ = [[1 if s > 0 else 2 for s in signs] + [0] * 6 for _, signs in chosen(poses)]
+        return *arrays(poses), np.array(bytes_)
+
+    def every(table_of_slots: Any) -> Answers:
+        axes, statuses = table_of_slots
+        row, slot = np.nonzero(statuses == softkin.Status.OK)
+        return axes[row, slot], row
+
+    def looked_at(solutions: Sequence[Any]) -> Answers:
+        return _rows([[s.axes for s in slots if s.axes is not None] for slots in solutions])
+
+    return [
+        Contender("softkin branches(frame)", ALL, frames, robot.branches, _slots, True),
+        Contender("softkin inverse_all(frame), checked", ALL, frames, robot.inverse_all, looked_at, True),
+        Contender("softkin tuple(inverse_all(frame))", ALL, frames, lambda f: tuple(robot.inverse_all(f)), looked_at, True),
+        Contender("softkin branch(frame, signs)", ONE, chosen, lambda c: robot.branch(*c), _single, True),
+        Contender("softkin inverse(frame, configuration), checked", ONE, named, lambda c: _or_none(robot, c), _single, True),
+        Contender("softkin inverse_batch, one solution", BATCH, configured, lambda p: robot.inverse_batch(*p), _batch, True),
+        Contender("softkin inverse_all_batch, all solutions", BATCH, arrays, lambda p: robot.inverse_all_batch(*p), every, True),
+    ]
+
+
+def _or_none(robot: softkin.Mechanism, given: Any) -> Any:
+    try:
+        return robot.inverse(*given)
+    except softkin.KinematicsError:
+        return None
+
+
+def _eaik(table: Table) -> list[Contender]:
+    robot = DhRobot(np.radians(table.alpha), np.array(table.a), np.array(table.d))
+
+    def answers(solutions: Sequence[Any]) -> Answers:
+        """What it calls a solution; what is one in the sense of least squares is none."""
+        kept = [[q for q, is_nearest in zip(s.Q, s.is_LS, strict=True) if not is_nearest] for s in solutions]
+        axes, pose = _rows(kept)
+        return np.degrees(axes) - table.zero, pose
+
+    return [
+        Contender("eaik IK(pose)", ALL, list, robot.IK, answers),
+        Contender("eaik IK(pose).Q", ALL, list, lambda pose: _read(robot.IK(pose)), answers),
+        Contender("eaik IK_batched, all solutions", BATCH, np.ascontiguousarray, robot.IK_batched, answers),
+    ]
+
+
+def _read(solution: Any) -> Any:
+    _ = solution.Q
+    return solution
+
+
+def _opw(table: Table) -> list[Contender]:
+    a, d = table.a, table.d
+    robot = opw.Robot(opw.KinematicModel(a1=a[0], a2=-a[2], b=0.0, c1=d[0], c2=a[1], c3=d[3], c4=d[5]))
+    shift, sign = _opw_zero(robot, table)
+
+    def axes(rows: Array) -> Array:
+        return rows * sign + shift
+
+    def every(solutions: Sequence[Any]) -> Answers:
+        found, pose = _rows([list(np.atleast_2d(s)) if len(s) else [] for s in solutions])
+        return axes(found), pose
+
+    def nearest(rows: Array) -> Answers:
+        solved = np.flatnonzero(~np.isnan(rows).any(axis=1))
+        return axes(np.asarray(rows)[solved]), solved
+
+    return [
+        Contender("py-opw-kinematics inverse(pose)", ALL, lambda p: [RigidTransform.from_matrix(m) for m in p], robot.inverse, every),
+        Contender("py-opw-kinematics batch_inverse, one solution", BATCH, RigidTransform.from_matrix, robot.batch_inverse, nearest),
+    ]
+
+
+def _opw_zero(robot: Any, table: Table) -> tuple[Array, Array]:
+    """Its zero pose and directions in terms of the table: the quarter turns and signs with which both chains agree."""
+    samples = np.random.default_rng(1).uniform(-80.0, 80.0, (7, 6))
+    frames = np.array([robot.forward(tuple(q)).as_matrix() for q in samples])
+    turns, signs = np.array([0.0, 90.0, 180.0, -90.0]), np.array([1.0, -1.0])
+    for code in range(8**6):
+        digits = np.array([code // 8**k % 8 for k in range(6)])
+        shift, sign = turns[digits % 4], signs[digits // 4]
+        if np.abs(table.frames(samples[:1] * sign + shift) - frames[:1]).max() < 1e-9 and (
+            np.abs(table.frames(samples * sign + shift) - frames).max() < 1e-9
+        ):
+            return shift, sign
+    raise AssertionError("py-opw-kinematics does not have this geometry")
+
+
+def _tuples(rows: Array) -> list[Any]:
+    return [tuple(tuple(v) if isinstance(v, list) else v for v in row) for row in rows.tolist()]
+
+
+def _rows(found: Sequence[Sequence[Any]]) -> Answers:
+    rows = [row for rows in found for row in rows]
+    return np.array(rows, dtype=float).reshape(-1, 6), np.repeat(np.arange(len(found)), [len(rows) for rows in found])
+
+
+def _slots(solutions: Sequence[Any]) -> Answers:
+    return _rows([[axes for axes in slots if axes is not None] for slots in solutions])
+
+
+def _single(solutions: Sequence[Any]) -> Answers:
+    return _rows([[] if axes is None else [axes] for axes in solutions])
+
+
+def _batch(result: Any) -> Answers:
+    axes, statuses = result
+    solved = np.flatnonzero(statuses == softkin.Status.OK)
+    return axes[solved], solved
