@@ -25,7 +25,8 @@ def _tools(kinematics: Kinematics) -> str:
     """Which offsets SMC_GroupSetTool takes: the flange's orientation must be known where the offset is removed."""
     if kinematics.mechanism.is_orientation:
         return "with a position block"
+    if kinematics.mechanism.task.turning is Turning.DIRECTION:
+        return "along the axis it turns about"
     if kinematics.projection is not None or kinematics.freedom is Freedom.ZERO:
         return "any"
-    turns_about_one = kinematics.freedom is Freedom.ONE or kinematics.mechanism.task.turning is Turning.DIRECTION
-    return "along the axis it turns about" if turns_about_one else "none"
+    return "along the axis it turns about" if kinematics.freedom is Freedom.ONE else "none"

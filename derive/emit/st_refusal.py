@@ -24,8 +24,9 @@ class Refusal:
         return self.answering(self.errors[status.name])
 
     def answering(self, error: str) -> tuple[str, ...]:
-        """Refuse with an error that an expression gives. Where a method answers yes or no, refusing is yes."""
+        """Refuse with an error that an expression gives. What allows no pose is singular; any other question is answered no."""
         if not self.signature.returns:
             return ("RETURN;",)
-        value = "TRUE" if self.signature.returns == "BOOL" else error
+        answer = "TRUE" if self.signature.name == "IsSingularity" else "FALSE"
+        value = answer if self.signature.returns == "BOOL" else error
         return (f"{self.signature.name} := {value};", "RETURN;")
