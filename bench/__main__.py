@@ -37,7 +37,8 @@ class Quality:
 
 def main() -> None:
     """Measure and print."""
-    print(f"Python {sys.version.split()[0]}, NumPy {np.__version__}; the least of {ROUNDS} rounds (batches: {BATCH_ROUNDS}), in turns.")
+    print(f"Python {sys.version.split()[0]}, NumPy {np.__version__}")
+    print(f"the least of {ROUNDS} rounds (batches: {BATCH_ROUNDS}), in turns")
     print(f"{SCALAR} random poses a call each, {ROWS} rows a batch; lost: of {SCALAR} random, and of 4096 of the 90-degree grid.")
     for table in (KR6_R900, UR5):
         report(table)

@@ -134,9 +134,10 @@ def _opw(table: Table) -> list[Contender]:
         solved = np.flatnonzero(~np.isnan(rows).any(axis=1))
         return axes(np.asarray(rows)[solved]), solved
 
+    one, many = "py-opw-kinematics inverse(pose)", "py-opw-kinematics batch_inverse, one solution"
     return [
-        Contender("py-opw-kinematics inverse(pose)", ALL, lambda p: [RigidTransform.from_matrix(m) for m in p], robot.inverse, every),
-        Contender("py-opw-kinematics batch_inverse, one solution", BATCH, RigidTransform.from_matrix, robot.batch_inverse, nearest),
+        Contender(one, ALL, lambda p: [RigidTransform.from_matrix(m) for m in p], robot.inverse, every),
+        Contender(many, BATCH, RigidTransform.from_matrix, robot.batch_inverse, nearest),
     ]
 
 

@@ -41,13 +41,13 @@ def discs_meet(centres: Sequence[Vector], radii: Sequence[sp.Expr]) -> sp.Basic:
     point = vector(along * b[1] - across * a[1], across * a[0] - along * b[0])  # times 2 * twice, seen from the first centre
     inside = (cross(point, b), cross(a, point))
     pairs = [
-        sp.Lt(dot(between, between), (radii[i] + radii[j]) ** 2)
+        sp.Le(dot(between, between), (radii[i] + radii[j]) ** 2)
         for i, j in ((0, 1), (0, 2), (1, 2))
         for between in [minus(centres[i], centres[j])]
     ]
     common = sp.Or(
         sp.Lt(inside[0], 0), sp.Lt(inside[1], 0), sp.Gt(inside[0] + inside[1], 2 * twice**2),
-        sp.Lt(dot(point, point), 4 * twice**2 * first),
+        sp.Le(dot(point, point), 4 * twice**2 * first),
     )
     return sp.And(*pairs, common)
 

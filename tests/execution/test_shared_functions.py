@@ -10,7 +10,7 @@ import sympy as sp
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from derive.program import Atan2, NearestOnArc, NearestPeriod, Root, real
+from derive.program import Atan2, NearestOnArc, NearestPeriod, Root, Status, real
 from derive.run import evaluate
 from tests.execution.units import compiled_shared
 from tests.st.library import StFault
@@ -225,3 +225,11 @@ def test_relative_rotation() -> None:
 def rotations(count: int) -> list[np.ndarray]:
     rng = np.random.default_rng(3)
     return [q * np.sign(np.linalg.det(q)) for q in (np.linalg.qr(rng.normal(size=(3, 3)))[0] for _ in range(count))]
+
+
+def test_the_number_of_an_answer() -> None:
+    """0 to 5 for what our blocks answer, -1 for any other."""
+    number = LIBRARY.function("Softkin_StatusNumber")
+    answers = [status.value for status in Status]
+    assert [number(answer) for answer in answers] == list(range(len(answers)))
+    assert number("SMC_MODULO_AXIS_FOR_NON_ROTARY_JOINT") == -1
