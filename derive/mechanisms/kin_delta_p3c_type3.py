@@ -19,7 +19,7 @@ from derive.mechanism import (
     rod,
     rotary,
 )
-from derive.vectors import cross, discs_meet, dot, minus, triple, vector
+from derive.vectors import cross, dot, minus, triple, vector
 
 ARMS = ("1", "2", "3")
 AZIMUTH = [
@@ -39,9 +39,6 @@ KNEES = [
 JOINTS = [vector(X + p * u[0], Y + p * u[1], Z) for p, u in zip(PLATE, OUT, strict=True)]
 RODS = [minus(joint, knee) for joint, knee in zip(JOINTS, KNEES, strict=True)]
 TURN = cross(OUT[0], OUT[1]) + cross(OUT[1], OUT[2]) + cross(OUT[2], OUT[0])
-DRIVES = [vector((r - p) * u[0], (r - p) * u[1]) for r, p, u in zip(BASE, PLATE, OUT, strict=True)]
-"""The motor axes as the rod joints see them, shifted to the TCP."""
-REACHES = [l1 + l2 for l1, l2 in zip(INNER, OUTER, strict=True)]
 
 MECHANISM = Mechanism(
     name="Kin_Delta_P3C_Type3",
@@ -60,6 +57,5 @@ MECHANISM = Mechanism(
     assembly=assembly("tcp", triple(RODS), margin="rods_coplanar", handedness=TURN, below=-1, above=+1),
     constraints=(
         Constraint(abs(TURN) > 1e-6, "the arms must not all point the same way"),
-        Constraint(discs_meet(DRIVES, REACHES), "the arms must be able to reach the plate"),
     ),
 )
