@@ -19,6 +19,7 @@ FILES = {str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p 
 UNITS = [name for name in FILES if not name.startswith(("softkin/", "selftest/"))]
 CONTRACT = load()
 PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits", "FindPlatform", "EndPointOnFlange"}
+PRIVATE |= {"DiagnoseBranch", "DiagnoseLimits"}
 ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")
 
 # Every piece of text that is no comment, string or pragma.

@@ -47,18 +47,33 @@ class Method:
     """Whether other programs call it: then, on arrays, it writes the statuses of its caller."""
 
 
-def scalar_body(method: Method) -> list[str]:
+class Refusals:
+    """How a body on plain numbers refuses: with a status alone."""
+
+    def of_conditions(self, requires: Sequence[Require]) -> list[str]:
+        """Where conditions that refuse alike do not all hold."""
+        head = fold(f"if not ({conjunction(r.condition for r in requires)}):")
+        return [*head, f"    return Status.{requires[0].otherwise.name}"]
+
+    def of_loop(self, loop: Iterate) -> str:
+        """Where a loop was never left."""
+        return f"return Status.{loop.otherwise.name}"
+
+
+_REFUSALS = Refusals()
+
+
+def scalar_body(method: Method, owner: str = "self._constants", refusals: Refusals = _REFUSALS) -> list[str]:
     """The body on plain numbers: the first condition that does not hold returns its status."""
-    lines = [*_unpacked(method), *_constants(method, "self._constants")]
+    lines = [*_unpacked(method), *_constants(method, owner)]
     for statement, same in _grouped(method.program.body):
         if isinstance(statement, Iterate):
             lines += [*scalar_head(statement, _SCALAR), *_step(statement, _SCALAR)]
-            lines += scalar_end(statement, conjunction([statement.done]), _SCALAR)
+            lines += scalar_end(statement, conjunction([statement.done]), refusals.of_loop(statement), _SCALAR)
         elif isinstance(statement, Call):
             lines += python_calls.scalar_lines(statement, _SCALAR)
         elif isinstance(statement, Require):
-            lines += [*_note(statement.note), *fold(f"if not ({conjunction(r.condition for r in same)}):")]
-            lines.append(f"    return Status.{statement.otherwise.name}")
+            lines += [*_note(statement.note), *refusals.of_conditions(same)]
         else:
             lines += binding_lines(statement, _SCALAR)
     return [*lines, *fold(f"return {_values(method, _SCALAR) or 'Status.OK'}")]

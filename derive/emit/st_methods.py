@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from jinja2 import Environment
 
@@ -14,7 +14,7 @@ from derive.emit.st_contract import Contract, Parameter, Signature
 from derive.emit.st_inputs import number_of
 from derive.emit.st_names import joined, stored_name
 from derive.emit.st_program import Printed, printed
-from derive.emit.st_refusal import Refusal
+from derive.emit.st_refusal import MISSING, REASON, Explained, Refusal
 from derive.emit.st_shared import method_name, own_names, signature_of
 from derive.kinematics import Kinematics
 from derive.program import Program, shared
@@ -29,6 +29,7 @@ _FIRST = (
     "AxesToOrientation",
     "IsSingularity",
     "Jacobian",
+    "Diagnose",
     "GetOrientationImage",
     "GetFlangeOrientationImageTotal",
     "GetFlangeOrientationImageWithOri",
@@ -59,6 +60,8 @@ class _Source:
     program: Program | None = None
     call: BranchCall | None = None
     is_shared: bool = False
+    is_explained: bool = False
+    """Whether its refusals say which quantity refused."""
 
 
 def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> tuple[Method, ...]:
@@ -102,6 +105,10 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
     ready: set[str] = set()
     for name in names:
         program = solved.get(name)
+        if name == "Diagnose":
+            call = branch_call(known["CartesianToAxes"], kinematics.branch, kinematics, block)
+            yield from _diagnosis(call, kinematics, contract)
+            continue
         if program is None:
             yield _Source(known[name], programs.get(name))
             yield from _shared(programs.get(name), kinematics, contract, ready)
@@ -114,6 +121,17 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
         yield from _shared(program, kinematics, contract, ready)
         if name == "CartesianToAxes":
             yield _Source(_check_limits(contract), kinematics.limits)
+
+
+def _diagnosis(call: BranchCall, kinematics: Kinematics, contract: Contract) -> Iterator[_Source]:
+    """The way of CartesianToAxes with reasons: the private methods are its own once more, with two outputs."""
+    outputs = (Parameter("VAR_OUTPUT", REASON, "STRING(255)"), Parameter("VAR_OUTPUT", MISSING, "LREAL"))
+    yield _Source(contract.signatures["Diagnose"], call=call)
+    for name, own, program in (
+        ("DiagnoseBranch", call.signature, kinematics.branch),
+        ("DiagnoseLimits", _check_limits(contract), kinematics.limits),
+    ):
+        yield _Source(replace(own, name=name, parameters=(*own.parameters, *outputs)), program, is_explained=True)
 
 
 def _shared(program: Program | None, kinematics: Kinematics, contract: Contract, ready: set[str]) -> Iterator[_Source]:
@@ -162,7 +180,8 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
     taken = {i.name for i in block.inputs} | set(block.fields) | {p.name for p in signature.parameters}
     taken |= {"initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes", *contract.signatures}
     taken |= {method_name(inner) for inner in kinematics.shared}
-    refusal = Refusal(signature, contract.spelling["errors"], contract.spelling["types"]["error"])
+    kind = Explained if source.is_explained else Refusal
+    refusal = kind(signature, contract.spelling["errors"], contract.spelling["types"]["error"])
     if program is kinematics.setup:
         given = {p.name: number_of(p) for p in kinematics.parameters}
         stored = {let: stored_name(output) for let, output in direct(kinematics).items()}

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from derive.mechanism import Joint, Kind
 from tests.execution.closeness import asked, assert_same
 from tests.execution.controller import NOT_INITIALIZED, OK, UNREACHABLE, Controller
+from tests.execution.reasons import compare_reason
 from tests.execution.samples import HALF_TURN, NO_TURN, Bytes, Sample, commands
 from tests.execution.twins import Twins
 from tests.execution.values import PROPERTIES_TYPE, meaningless
@@ -89,6 +90,11 @@ def inverse(twins: Twins, sample: Sample) -> None:
         expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
         found = twins.controller.inverse(*frame, command.configuration, command.reference)
         assert_same(found, (status, expected), twins, command)
+
+
+def diagnose(twins: Twins, sample: Sample) -> None:
+    for command in commands(twins.machine, sample):
+        compare_reason(twins, command)
 
 
 def orientation(twins: Twins, sample: Sample) -> None:
@@ -224,6 +230,7 @@ COMPARISONS: dict[str, Comparison] = {
     "AxesToOrientation": orientation,
     "IsSingularity": singularity,
     "Jacobian": jacobian,
+    "Diagnose": diagnose,
     "GetOrientationImage": image,
     "GetFlangeOrientationImageTotal": image,
     "GetFlangeOrientationImageWithOri": image_with_orientation,

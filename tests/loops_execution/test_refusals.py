@@ -80,6 +80,8 @@ def test_every_limit_refuses_alone(loops: tuple[Loop, ...]) -> None:
                 controller = Controller(loop.library, loop.mechanism)
                 assert controller.initialise({**loop.robot.parameters, **limits, "check_limits": checked}) == OK
                 assert controller.inverse(position, rotation, own, sample.axes)[0] == answer
+                reason, missing = controller.diagnose(position, rotation, own, sample.axes)
+                assert (missing > 0.0) == (f"limits of {joint.name}" in reason) == (answer == UNREACHABLE)
 
 
 def test_a_configuration_that_is_too_small_is_refused(loops: tuple[Loop, ...]) -> None:

@@ -26,14 +26,17 @@ Verified at 6 poses, before it was written, by a witness that knows the closure 
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import root
-from softkin._types import Axis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import OrientationPrograms
 
 
@@ -215,6 +218,12 @@ class Tool(OrientationKinematics):
             (flange_axis_x, flange_axis_y, flange_axis_z),
             0.0,
         )
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.tool import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""
