@@ -49,10 +49,8 @@ def _inside(side: str, cones: Sequence[tuple[Rod, sp.Expr]], axis: str) -> Itera
     for cone, name in least.items():
         narrow = sp.Gt(sp.cos(cone), BOUNDARY - 1)
         yield Let(name, Select(narrow, sp.cos(cone) - BOUNDARY, sp.Integer(-2)), f"least cosine of a leg's lean on the {side}")
-    conditions = []
     for rod, cone in cones:
         lean = of(f"cos_{side}_lean", rod)
         yield Let(lean, sp.Add(*[a * b for a, b in zip(names("along", rod), names(axis, rod), strict=True)]))
-        conditions.append(sp.Ge(lean, least[cone]))
-    if conditions:
-        yield Require(sp.And(*conditions), Status.UNREACHABLE, f"a joint on the {side} bends beyond its cone")
+        note = f"leg {rod.name}: its joint on the {side} bends beyond its cone"
+        yield Require(sp.Ge(lean, least[cone]), Status.UNREACHABLE, note)

@@ -11,6 +11,7 @@ from dataclasses import astuple, dataclass
 
 import sympy as sp
 
+from derive.diagnosis import Reasons, reasons_of
 from derive.kinematics import Kinematics
 from derive.program import Atan2, Call, Iterate, Let, NearestOnArc, NearestPeriod, Program, Require, Root, Solve, Statement
 
@@ -73,7 +74,8 @@ _PERIOD_BYTE = Cost(additions=4, divisions=1)
 def costs_of(kinematics: Kinematics) -> Costs:
     """What forward and inverse kinematics of a mechanism cost at worst."""
     periods, axes = len(kinematics.period_joints), len(kinematics.distance_joints)
-    branch, limits = cost_of(kinematics.branch), cost_of(kinematics.limits)
+    reasons = reasons_of(kinematics)
+    branch, limits = (_with_refusals(p, reasons) for p in (kinematics.branch, kinematics.limits))
     # The distance of a solution from the reference, a sum of squares, and its comparison with the least so far
     tried = branch + Cost(additions=3 * axes, multiplications=axes) if kinematics.branches else branch
     return Costs(
@@ -82,6 +84,20 @@ def costs_of(kinematics: Kinematics) -> Costs:
         automatic=tried * 2 ** len(kinematics.branches) + limits,
         bounds=tuple(dict.fromkeys(b for p in (kinematics.forward, kinematics.branch) for b in _bounds(p))),
     )
+
+
+def _with_refusals(program: Program, reasons: Reasons) -> Cost:
+    """The same where a refusal also computes how much is missing: nothing that follows is then computed."""
+    worst, before = cost_of(program), Cost()
+    for statement in program.body:
+        before += _statement(statement)
+        if isinstance(statement, Require):
+            worst = _most(worst, *(before + expression_cost(c.missing) for c in reasons.checks([statement])))
+    return worst
+
+
+def _most(*costs: Cost) -> Cost:
+    return Cost(*map(max, zip(*map(astuple, costs), strict=True)))
 
 
 def cost_of(program: Program) -> Cost:

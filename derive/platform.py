@@ -114,15 +114,19 @@ def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[
         arm = names("arm", rod)
         found = (*turned(ROTATION_ENTRIES, point_of(rod), arm), *span(rod, POSITION, arm, rod.base), *row(rod, arm, rod.length))
         lets += [let for let in found if let.name not in bound]
-    long_enough = sp.And(*[sp.Gt(rod.length, SHORTEST_LINK * SCALE) for rod in mechanism.rods])
     margin = sp.Ge(ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN))
     return (
         *lets,
-        Require(long_enough, Status.UNREACHABLE, "a leg without length has no direction"),
+        *(_long_enough(rod) for rod in mechanism.rods),
         *cone_checks(mechanism),
         Solve((), rows(mechanism), (), DETERMINANT, "margin of the platform"),
         Require(margin, Status.UNREACHABLE, f"{MARGIN}: the other assembly mode, or too near to losing the plate"),
     )
+
+
+def _long_enough(rod: Rod) -> Require:
+    note = f"leg {rod.name}: without length it has no direction"
+    return Require(sp.Gt(rod.length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, note)
 
 
 def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:

@@ -114,13 +114,14 @@ def branch_statements(both: Searching) -> tuple[Statement, ...]:
     trial = _trial(both)
     loop = search_loop(trial, free(mechanism.search.joint), sigma, sp.Lt(SEARCHED, _HALF))
     bound = set(binds(loop))
+    note = f"{mechanism.search.joint.name}: the search along it finds no root of this branch"
     rest = tuple(s for s in trial.statements if not (isinstance(s, Let) and s.name in bound))
     return (
         searched_flag(mechanism),
         *closed,
         Require(sp.Or(is_searched, sp.Gt(sigma, 0)), Status.UNREACHABLE, "without the offset there is no second crossing"),
         loop,
-        Require(sp.Or(sp.Lt(SEARCHED, _HALF), sp.Gt(ACCEPTED, _HALF)), Status.UNREACHABLE, "no root in this branch"),
+        Require(sp.Or(sp.Lt(SEARCHED, _HALF), sp.Gt(ACCEPTED, _HALF)), Status.UNREACHABLE, note),
         *rest,
         *_chosen(both, is_searched),
     )

@@ -7,9 +7,11 @@ from textwrap import wrap
 
 from jinja2 import Environment
 
+from derive.diagnosis import NO_MEANING
 from derive.emit import python_entries as entries
 from derive.emit import python_setup as setup
 from derive.emit.language import GENERATED, environment
+from derive.emit.python_diagnosis import diagnosis
 from derive.emit.python_layout import WIDTH, fold
 from derive.emit.python_methods import branch, carried, forwards, limits, methods, shared
 from derive.emit.python_printer import ARRAY_NAMES, array_helpers_in, literal, primitives_in
@@ -29,6 +31,7 @@ _FIXED = (
     "softkin/_configuration.py",
     "softkin/_core.py",
     "softkin/_coupled.py",
+    "softkin/_diagnosis/__init__.py",
     "softkin/_input.py",
     "softkin/_offset.py",
     "softkin/_orientation.py",
@@ -46,8 +49,8 @@ _FIXED = (
 _INDEXED = ("README.md", "softkin/__init__.py")
 """Files that list the mechanisms."""
 _EXPORTS = (
-    "Axis", "ConfigurationByte", "Coupled", "Frame", "KinematicsError", "Mechanism", "OrientationImage", "Parameter",
-    "Singularity", "Solution", "Status", "catalogue",
+    "Axis", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "KinematicsError", "Mechanism", "OrientationImage",
+    "Parameter", "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
 _ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Vector", "passed", "require")
 _CHUNK = 8192
@@ -90,6 +93,7 @@ def _templates() -> Environment:
         "singular": literal(float(SINGULAR)),
         "solvable": literal(float(SOLVABLE)),
         "tie": literal(float(TIE)),
+        "no_meaning": NO_MEANING,
     }
     return templates
 
@@ -140,6 +144,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "takes_signs": can_be_unrolled(kin) and kin.branches,
     }
     files = {
+        f"softkin/_diagnosis/{names['module']}.py": templates.get_template("diagnosis.py.j2").render({**names, **diagnosis(kin)}),
         f"softkin/{names['module']}.py": templates.get_template("mechanism.py.j2").render(context),
         f"softkin/_array_programs/{names['module']}.py": templates.get_template("arrays.py.j2").render(array_context),
     }
@@ -172,8 +177,8 @@ def _bases(kin: Kinematics) -> dict[str, str]:
 def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
     kinds = {m.kind for m in used if m.kind} | {a.kind for m in used for a in m.arguments}
     lean = {"Frame", "Reals", "Rotation", "Vector"} if can_be_unrolled(kin) else set()
-    bytes_ = {"ConfigurationByte"} if kin.configuration_size else set()
-    return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Axis", "Parameter", "Status"} | bytes_ | lean)
+    lean |= {"ConfigurationByte"} if kin.configuration_size else set()
+    return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Axis", "Diagnosis", "Parameter", "Reals", "Status"} | lean)
 
 
 def _head(method: Method, prefix: str) -> list[str]:

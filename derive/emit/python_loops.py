@@ -37,13 +37,13 @@ def _head(loop: Iterate, start: str) -> list[str]:
     return [*note, *fold(f"{', '.join(_names(loop.state))} = {start}"), f"for _ in range({loop.limit}):"]
 
 
-def scalar_end(loop: Iterate, done: str, printer: ScalarPrinter) -> list[str]:
+def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -> list[str]:
     """Leave the loop, or go on; a loop that was never left refuses."""
     return [
         *_indented([*fold(f"if ({done}):" if len(done) > 90 else f"if {done}:"), "    break"]),
         *_indented(_assignments(loop, printer)),
         "else:",
-        f"    return Status.{loop.otherwise.name}",
+        f"    {refusal}",
     ]
 
 

@@ -63,23 +63,45 @@ class Method:
     """Whether other programs call it: then, on arrays, it writes the statuses of its caller."""
 
 
-def scalar_body(method: Method) -> list[str]:
+@dataclass(frozen=True)
+class Refusals:
+    """How a body on plain numbers refuses: it returns what `answer` says for a status."""
+
+    answer: Callable[[Status], str]
+
+    def lines(self, requires: Sequence[Require]) -> list[str]:
+        """Where conditions that refuse alike do not all hold."""
+        head = fold(f"if not ({conjunction(r.condition for r in requires)}):")
+        return [*head, f"    return {self.answer(requires[0].otherwise)}"]
+
+    def of_loop(self, loop: Iterate) -> str:
+        """Where a loop was never left."""
+        return f"return {self.answer(loop.otherwise)}"
+
+    def reads(self, require: Require) -> tuple[sp.Expr, ...]:
+        """What a refusal computes: it must be bound whichever way the program went."""
+        return ()
+
+
+_REFUSALS = Refusals(lambda status: f"Status.{status.name}")
+
+
+def scalar_body(method: Method, owner: str = "self._constants", refusals: Refusals = _REFUSALS) -> list[str]:
     """The body on plain numbers: the first condition that does not hold returns its status."""
-    lines = [*unpacked(method), *_constants(method, "self._constants")]
-    lines += statement_lines(method.program, lambda status: f"Status.{status.name}", _SCALAR)
+    lines = [*unpacked(method), *_constants(method, owner), *statement_lines(method.program, refusals, _SCALAR)]
     return [*lines, *fold(f"return {_values(method, _SCALAR) or 'Status.OK'}")]
 
 
-def statement_lines(program: Program, refusal: Callable[[Status], str], printer: ScalarPrinter) -> list[str]:
-    """The statements of a program on plain numbers; `refusal` is what it returns where a condition does not hold."""
+def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
+    """The statements of a program on plain numbers."""
     lines: list[str] = []
-    for item, same in grouped(in_arms(program.body, [o.value for o in program.outputs])):
+    needed = [e for s in program.body if isinstance(s, Require) for e in refusals.reads(s)]
+    for item, same in grouped(in_arms(program.body, [*(o.value for o in program.outputs), *needed])):
         if isinstance(item, Require):
-            lines += [*_note(item.note), *fold(f"if not ({conjunction(r.condition for r in same)}):")]
-            lines.append(f"    return {refusal(item.otherwise)}")
+            lines += [*_note(item.note), *refusals.lines(same)]
         elif isinstance(item, Iterate):
             lines += [*scalar_head(item, printer), *_step(item, printer)]
-            lines += scalar_end(item, conjunction([item.done]), printer)
+            lines += scalar_end(item, conjunction([item.done]), refusals.of_loop(item), printer)
         elif isinstance(item, Call):
             lines += python_calls.scalar_lines(item, printer)
         else:

@@ -10,7 +10,7 @@ import sympy as sp
 from derive.emit.python_layout import fold
 from derive.emit.python_methods import POSITION, ROTATION, branch
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, primitives_in, spelled
-from derive.emit.python_program import Argument, Method, array_statements, constants_of, statement_lines, unpacked
+from derive.emit.python_program import Argument, Method, Refusals, array_statements, constants_of, statement_lines, unpacked
 from derive.kinematics import Kinematics
 from derive.program import Program, Status, real
 from derive.unroll import REFUSAL, Sign, choices, is_straight, principal, specialised, suffixed, unroll, with_limits
@@ -117,18 +117,18 @@ def _function(method: Method, body: list[str]) -> Function:
 def _slots(kin: Kinematics, method: Method) -> list[str]:
     """The body of the checked function."""
     count = 2 ** len(kin.branches)
-    lines = statement_lines(method.program, lambda status: f"{count}*({list(Status).index(status)}.0,)", _SCALAR)
+    lines = statement_lines(method.program, Refusals(lambda status: f"{count}*({list(Status).index(status)}.0,)"), _SCALAR)
     return [*lines, *_returned(kin, method.program, lambda refusal: refusal)]
 
 
 def _directions(kin: Kinematics, method: Method) -> list[str]:
     count = 2 ** len(kin.branches)
-    lines = statement_lines(method.program, lambda _: f"{count}*(None,)", _DIRECTIONS)
+    lines = statement_lines(method.program, Refusals(lambda _: f"{count}*(None,)"), _DIRECTIONS)
     return [*lines, *_returned(kin, method.program, lambda _: "None")]
 
 
 def _direction(method: Method) -> list[str]:
-    lines = statement_lines(method.program, lambda _: "None", _DIRECTIONS)
+    lines = statement_lines(method.program, Refusals(lambda _: "None"), _DIRECTIONS)
     values = [_DIRECTIONS.print(o.value) for o in method.program.outputs]
     return [*lines, *fold(f"return {_tuple(values)}")]
 

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 from jinja2 import Environment
 
+from derive.diagnosis import NO_MEANING, NOT_INITIALIZED
 from derive.emit import plcopen
 from derive.emit.language import GENERATED, TEMPLATES, environment
 from derive.emit.st_block import block_of
@@ -116,6 +117,8 @@ def _templates() -> Environment:
         solvable=literal(float(SOLVABLE)),
         smallest=literal(1.0 / float(SOLVABLE)),
         tie=literal(float(TIE)),
+        not_initialized=NOT_INITIALIZED,
+        no_meaning=NO_MEANING,
     )
     return templates
 

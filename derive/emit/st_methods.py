@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from jinja2 import Environment
 
+from derive.diagnosis import reasons_of, texts
 from derive.emit.st_block import Block, constants, direct
 from derive.emit.st_calls import BranchCall, branch_call
 from derive.emit.st_contract import Contract, Parameter, Signature
 from derive.emit.st_inputs import number_of
 from derive.emit.st_names import joined, stored_name
 from derive.emit.st_program import Printed, printed
-from derive.emit.st_refusal import Refusal
+from derive.emit.st_refusal import MISSING, REASON, Explained, Refusal
 from derive.emit.st_shared import method_name, own_names, signature_of
 from derive.kinematics import Kinematics
 from derive.program import Program, shared
@@ -29,6 +30,7 @@ _FIRST = (
     "AxesToOrientation",
     "IsSingularity",
     "Jacobian",
+    "Diagnose",
     "GetOrientationImage",
     "GetFlangeOrientationImageTotal",
     "GetFlangeOrientationImageWithOri",
@@ -103,17 +105,24 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
     for name in names:
         program = solved.get(name)
         if program is None:
-            yield _Source(known[name], programs.get(name))
+            call = branch_call(known["CartesianToAxes"], kinematics.branch, kinematics, block) if name == "Diagnose" else None
+            yield _Source(known[name], programs.get(name), call)
             yield from _shared(programs.get(name), kinematics, contract, ready)
             if name == "GetPositionFromOrientation3":
                 yield _Source(_end_point(known[name], contract))
             continue
         call = branch_call(known[name], program, kinematics, block)
         yield _Source(known[name], call=call)
-        yield _Source(call.signature, program)
+        yield _Source(_explained(call.signature) if name == "CartesianToAxes" else call.signature, program)
         yield from _shared(program, kinematics, contract, ready)
         if name == "CartesianToAxes":
-            yield _Source(_check_limits(contract), kinematics.limits)
+            yield _Source(_explained(_check_limits(contract)), kinematics.limits)
+
+
+def _explained(signature: Signature) -> Signature:
+    """With outputs that only Diagnose reads."""
+    outputs = (Parameter("VAR_OUTPUT", REASON, "INT"), Parameter("VAR_OUTPUT", MISSING, "LREAL"))
+    return replace(signature, parameters=(*signature.parameters, *outputs))
 
 
 def _shared(program: Program | None, kinematics: Kinematics, contract: Contract, ready: set[str]) -> Iterator[_Source]:
@@ -148,6 +157,8 @@ def _method(source: _Source, kinematics: Kinematics, block: Block, contract: Con
     name = source.signature.name
     reads = kinematics.reads_rotation
     context: dict[str, object] = {"block": block, "method": name, "call": source.call, "reads_rotation": reads}
+    if name == "Diagnose":
+        context["reasons"] = texts(kinematics)
     if source.program is not None:
         context["program"] = program = _printed(source, source.program, kinematics, block, contract)
         own = own_names(source.program, spelled_inputs(kinematics))
@@ -162,7 +173,10 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
     taken = {i.name for i in block.inputs} | set(block.fields) | {p.name for p in signature.parameters}
     taken |= {"initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes", *contract.signatures}
     taken |= {method_name(inner) for inner in kinematics.shared}
-    refusal = Refusal(signature, contract.spelling["errors"], contract.spelling["types"]["error"])
+    errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
+    refusal = Refusal(signature, errors, error)
+    if REASON in {p.name for p in signature.parameters}:
+        refusal = Explained(signature, errors, error, reasons_of(kinematics), texts(kinematics))
     if program is kinematics.setup:
         given = {p.name: number_of(p) for p in kinematics.parameters}
         stored = {let: stored_name(output) for let, output in direct(kinematics).items()}

@@ -9,7 +9,7 @@ from itertools import groupby
 import sympy as sp
 
 from derive.emit.st_expression import StructuredText, is_size_test
-from derive.emit.st_layout import commented, conjunction, indented, wrapped
+from derive.emit.st_layout import commented, indented, wrapped
 from derive.emit.st_loops import LOCALS, declarations, kept, loop_lines, solve_lines
 from derive.emit.st_names import respelled, spellings
 from derive.emit.st_refusal import Refusal
@@ -70,13 +70,12 @@ def _body(body: Sequence[Statement], printer: StructuredText, refusal: Refusal) 
             continue
         if isinstance(first, Iterate):
             step = list(_body(first.step, printer, refusal))
-            lines = list(loop_lines(first, step, printer, refusal.of(first.otherwise)))
+            lines = list(loop_lines(first, step, printer, refusal.of_loop(first)))
             yield from ("", *commented(lines, respelled(first.note, printer.names)), "")
             continue
         lets = [s for s in statements if isinstance(s, Let)]
         if isinstance(first, Require):
-            conditions = [s.condition for s in statements if isinstance(s, Require)]
-            lines = _require(conditions, printer, refusal.of(first.otherwise))
+            lines = refusal.lines([s for s in statements if isinstance(s, Require)], printer)
             yield from commented(lines, respelled(first.note, printer.names))
         elif isinstance(kind[0], str):
             yield from commented(_choice(kind[0], lets, printer), _notes(lets, printer.names))
@@ -104,12 +103,6 @@ def _kind(statement: Statement, printer: StructuredText) -> Kind:
 
 def _notes(lets: Sequence[Let], names: Mapping[str, str]) -> str:
     return "; ".join(dict.fromkeys(respelled(let.note, names) for let in lets if let.note))
-
-
-def _require(conditions: Sequence[sp.Basic], printer: StructuredText, refusal: Sequence[str]) -> list[str]:
-    parts = [printer.print(part) for c in conditions for part in sp.ordered(sp.And.make_args(c))]
-    head = conjunction("IF NOT (", parts, ") THEN")
-    return [*head, *indented(refusal), "END_IF"]
 
 
 def _assignments(lets: Sequence[Let], printer: StructuredText) -> Iterator[str]:

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+import sympy as sp
+
+from derive.diagnosis import Reasons
 from derive.emit.st_contract import Signature
-from derive.program import Status
+from derive.emit.st_expression import StructuredText
+from derive.emit.st_layout import conjunction, indented, wrapped
+from derive.program import Iterate, Require, Status
+
+REASON, MISSING = "iReason", "dMissing"
+"""The outputs of a method that explains its refusals: a number, for which Diagnose has the text, and an amount."""
 
 
 @dataclass(frozen=True)
@@ -23,6 +31,10 @@ class Refusal:
         """Refuse with a status."""
         return self.answering(self.errors[status.name])
 
+    def of_loop(self, loop: Iterate) -> tuple[str, ...]:
+        """Refuse where a loop was never left."""
+        return self.of(loop.otherwise)
+
     def answering(self, error: str) -> tuple[str, ...]:
         """Refuse with an error that an expression gives. What allows no pose is singular; any other question is answered no."""
         if not self.signature.returns:
@@ -30,3 +42,37 @@ class Refusal:
         answer = "TRUE" if self.signature.name == "IsSingularity" else "FALSE"
         value = answer if self.signature.returns == "BOOL" else error
         return (f"{self.signature.name} := {value};", "RETURN;")
+
+    def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
+        """Refuse where conditions that refuse alike do not all hold."""
+        parts = [printer.print(part) for r in requires for part in sp.ordered(sp.And.make_args(r.condition))]
+        head = conjunction("IF NOT (", parts, ") THEN")
+        return [*head, *indented(self.of(requires[0].otherwise)), "END_IF"]
+
+
+@dataclass(frozen=True)
+class Explained(Refusal):
+    """The same for a method that also says why, and how much is missing."""
+
+    reasons: Reasons
+    texts: Sequence[str]
+    """All reasons of the block: the place of one, from 1, is its number."""
+
+    def of_loop(self, loop: Iterate) -> tuple[str, ...]:
+        """Refuse where a loop was never left."""
+        return self._because(self.reasons.loop(loop), loop.otherwise)
+
+    def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
+        """Every reason for itself."""
+        return list(self._lines(requires, printer))
+
+    def _lines(self, requires: Sequence[Require], printer: StructuredText) -> Iterator[str]:
+        for check in self.reasons.checks(requires):
+            yield from conjunction("IF NOT (", [printer.print(c) for c in check.conditions], ") THEN")
+            if check.missing != 0:
+                yield from indented(wrapped(f"{MISSING} := {printer.print(check.missing)};"))
+            yield from indented(self._because(check.reason, check.status))
+            yield "END_IF"
+
+    def _because(self, reason: str, status: Status) -> tuple[str, ...]:
+        return (f"{REASON} := {self.texts.index(reason) + 1};", *self.of(status))

@@ -69,7 +69,7 @@ def _beside(
         *naming.lets,
         Let(divisor, Select(determined, distance, shortest), note),
         Let(square, (distance - beside) * (distance + beside) / divisor**2, "kept as a product"),
-        Require(sp.Ge(square, -BOUNDARY), Status.UNREACHABLE, "out of reach"),
+        Require(sp.Ge(square, -BOUNDARY), Status.UNREACHABLE, f"{angle.name}: out of reach"),
         Let(cos_name, beside / divisor),
         Let(sin_name, slope.sigma * Root(square)),
         Let(cosine(angle), Select(determined, cos_value, cos_free), "its reference where it is free"),

@@ -80,7 +80,7 @@ def _amplitude(
     aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
     divisor = real(f"divisor_{angle.name}")
     guard = (
-        Require(aimable, Status.UNREACHABLE, "the effective length is too short to be aimed"),
+        Require(aimable, Status.UNREACHABLE, f"{angle.name}: its effective length is too short"),
         Let(divisor, Select(aimable, effective, sp.Integer(1))),
     )
     right = e
@@ -105,7 +105,7 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
         *amplitude.guard,
         Let(scale, length, f"{angle.name}: law of cosines in the {equation.label} equation"),
         Let(square, _product(length - right) * _product(length + right) / scale**2, "kept as a product"),
-        Require(sp.Ge(square, -BOUNDARY), Status.UNREACHABLE, "out of reach"),
+        Require(sp.Ge(square, -BOUNDARY), Status.UNREACHABLE, f"{angle.name}: out of reach"),
         Let(cos_name, right / scale),
         Let(sin_name, sigma * Root(square)),
     ]

@@ -55,6 +55,8 @@ def call_of(twins: Twins, controller: Controller, method: str, sample: Sample) -
     given = _fitting(twins, sample)
     arguments, written = {}, []
     for parameter, make in zip(entry.routine.parameters, entry.defaults, strict=True):
+        if parameter.scope == "VAR_OUTPUT":
+            continue
         if parameter.is_reference and not parameter.constant:
             arguments[parameter.name] = values.filled(make())
             written.append(parameter.name)

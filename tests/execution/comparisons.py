@@ -11,6 +11,7 @@ from derive.mechanism import Joint, Kind, Turning
 from derive.splits import is_spatial
 from tests.execution.closeness import asked, assert_same, is_close
 from tests.execution.controller import NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller
+from tests.execution.reasons import compare_reason
 from tests.execution.samples import HALF_TURN, NO_TURN, Bytes, Command, Sample, commands
 from tests.execution.twins import Twins
 from tests.execution.values import PROPERTIES_TYPE, meaningless
@@ -119,6 +120,11 @@ def assert_same_pose(twins: Twins, found: Answer, expected: Answer, command: Com
     assert max(apart) < ROUNDING * twins.machine.reach, f"{found} is not {expected}: {twins} {command}"
     turned = [abs(a - b) for p, q in zip(first.rotation, second.rotation, strict=True) for a, b in zip(p, q, strict=True)]
     assert max(turned) < ROUNDING or not twins.machine.closure.follows_rotation, f"{found} is not {expected}: {twins} {command}"
+
+
+def diagnose(twins: Twins, sample: Sample) -> None:
+    for command in commands(twins.machine, sample):
+        compare_reason(twins, command)
 
 
 def orientation(twins: Twins, sample: Sample) -> None:
@@ -259,6 +265,7 @@ COMPARISONS: dict[str, Comparison] = {
     "AxesToOrientation": orientation,
     "IsSingularity": singularity,
     "Jacobian": jacobian,
+    "Diagnose": diagnose,
     "GetOrientationImage": image,
     "GetFlangeOrientationImageTotal": image,
     "GetFlangeOrientationImageWithOri": image_with_orientation,

@@ -63,6 +63,18 @@ class Controller:
         )
         return self._answer(status, lambda: values.axes_of(found))
 
+    def diagnose(
+        self, position: Numbers, rows: Iterable[Numbers], configuration: Iterable[int], reference: Numbers
+    ) -> tuple[str, float]:
+        """Diagnose: the reason, and how much is missing."""
+        reason, outputs = self.block.call_with_outputs(
+            "Diagnose",
+            f=values.frame(self.library, position, rows),
+            aRef=values.axes(self.library, reference),
+            cd=values.configuration(self.library, configuration),
+        )
+        return reason, outputs["dMissing"]
+
     def inverse_offset(self, point: Numbers, offset: Numbers, configuration: Iterable[int], reference: Numbers) -> Answer:
         """CartesianToAxes_Offset: all entries of the axis values."""
         found = self._new(values.AXES_TYPE)

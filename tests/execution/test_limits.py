@@ -66,4 +66,7 @@ def status(one: Twins, sample: Sample, limits: dict[str, float]) -> str:
     controller = Controller(one.library, one.mechanism)
     assert controller.initialise({**one.robot.parameters, **limits}) == OK
     position, rotation, data = controller.forward(sample.axes)[1]
-    return controller.inverse(position, rotation, data, sample.axes)[0]
+    found: str = controller.inverse(position, rotation, data, sample.axes)[0]
+    reason, missing = controller.diagnose(position, rotation, data, sample.axes)
+    assert (missing > 0.0) == ("limit [" in reason) == (found == UNREACHABLE)
+    return found

@@ -39,6 +39,7 @@ def is_automatic(result: Any, before: State, after: State) -> bool:
 
 NEUTRAL: dict[str, Callable[[Any, State, State], bool]] = {
     "IsInitialized": lambda result, before, after: result is False,
+    "Diagnose": lambda result, before, after: result == "not initialized",
     "IsSingularity": lambda result, before, after: result is True,
     "GetAxisProperties": is_free,
     "GetOrientationImage": is_unknown,

@@ -10,7 +10,8 @@ from derive.mechanism import Mechanism
 from tests.execution import test_blocks_alone, test_configuration_blocks, test_garbage, test_initialise, test_not_initialised
 from tests.execution.closeness import asked, assert_same
 from tests.execution.controller import NOT_INITIALIZED, Controller
-from tests.execution.samples import Bytes, Sample
+from tests.execution.reasons import compare_reason, provoke
+from tests.execution.samples import NO_TURN, Bytes, Command, Sample
 from tests.execution.statements import Statements
 from tests.execution.test_every_statement import few, left_out, libraries
 from tests.execution.units import file_of
@@ -61,6 +62,7 @@ def run_the_tests(mechanism: Mechanism, loops: tuple[Loop, ...]) -> None:
     test_garbage.test_what_is_no_rotation(loops[:2])
     if loops[0].robot.CONFIGURATION:
         test_configuration_blocks.test_what_is_set_is_read(loops[1])
+    provoke(loops[1], loops[1].regular[0])
     test_branches.test_a_byte_without_a_meaning_is_refused(loops[:1])
     test_refusals.test_every_limit_refuses_alone(loops)
     for name, given, changes, _ in IMPOSSIBLE.values():
@@ -81,6 +83,7 @@ def go_out(loop: Loop) -> None:
             size = share * loop.machine.reach
             place = tuple(p + size * d for p, d in zip(position, (x, y, z), strict=True))
             for data in ((0,) * len(own), default):
+                compare_reason(loop, Command(place, NO_TURN, data, sample.axes))
                 compare(loop, place, sample, data)
                 compare_offset(loop, place, sample, data)
 
@@ -103,6 +106,7 @@ def at_edges(mechanism: Mechanism) -> list[Loop]:
         (sample,) = loop.regular
         for place, data in product(places, product((0, 1, 2), repeat=loop.robot.BRANCHES)):
             turned = (*data, *(0,) * len(loop.robot.PERIOD_AXES))
+            compare_reason(loop, Command(place, NO_TURN, turned, sample.axes))
             compare(loop, place, sample, turned)
             compare_offset(loop, tuple(p + o for p, o in zip(place, sample.offset, strict=True)), sample, turned)
     return found

@@ -80,6 +80,9 @@ def test_every_limit_refuses_alone(loops: tuple[Loop, ...]) -> None:
                 controller = Controller(loop.library, loop.mechanism)
                 assert controller.initialise({**loop.robot.parameters, **limits, "check_limits": checked}) == OK
                 assert controller.inverse(position, rotation, own, sample.axes)[0] == answer
+                reason, missing = controller.diagnose(position, rotation, own, sample.axes)
+                assert (answer == UNREACHABLE) == reason.startswith(f"{joint.name}: ") == ("limit [" in reason)
+                assert missing == pytest.approx(0.0 if answer == OK else 1e-3, abs=1e-5)
 
 
 def test_a_configuration_that_is_too_small_is_refused(loops: tuple[Loop, ...]) -> None:

@@ -14,6 +14,7 @@ from softkin._coupled import Coupled
 from softkin._types import (
     Axis,
     ConfigurationByte,
+    Diagnosis,
     Frame,
     KinematicsError,
     OrientationImage,
@@ -84,6 +85,7 @@ __all__ = [
     "Coupled",
     "Crane",
     "DeltaP3CType3",
+    "Diagnosis",
     "Frame",
     "Gantry2",
     "Gantry3",

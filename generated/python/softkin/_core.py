@@ -26,6 +26,7 @@ from softkin._types import (
     Axis,
     Configuration,
     ConfigurationByte,
+    Diagnosis,
     Frame,
     FrameLike,
     KinematicsError,
@@ -199,6 +200,35 @@ class Mechanism(ABC):
         signs: 1.0 for byte 1 of a branch, -1.0 for byte 2.
         """
         return self._direction(frame, signs, (0.0,) * len(self.AXES) if reference is None else reference)
+
+    def diagnose(
+        self, frame: FrameLike, configuration: Iterable[int] | None = None, reference: Numbers | None = None
+    ) -> Diagnosis:
+        """Why `inverse` refuses these arguments: which quantity, and how much is missing.
+
+        Where the configuration leaves branches open and none has a solution, it speaks of the first of them.
+        """
+        position, rows = self._pose(frame)
+        near = self._near(reference)
+        found = (self.DEFAULT_CONFIGURATION if configuration is None else tuple(configuration))[: self.BRANCHES]
+        for place, byte in enumerate(found):
+            if byte not in (0, 1, 2, 3):
+                return Diagnosis(Status.BAD_INPUT, "byte {byte} of the configuration means nothing".format(byte=place), 0.0)
+        branches, turns = self._read(configuration)
+        branch, limits = self._explained()
+        refusals: list[Diagnosis] = []
+
+        def solved(signs: Reals) -> Reals | Status:
+            answer = branch(position, rows, signs, turns, near)
+            if isinstance(answer, Diagnosis):
+                refusals.append(answer)
+                return answer.status
+            return answer
+
+        axes = self._choose(solved, branches, near)
+        if isinstance(axes, Status):
+            return refusals[0]
+        return limits(axes) if self.checks_limits else Diagnosis(Status.OK, "", 0.0)
 
     def jacobian(self, axes: Numbers) -> Matrix:
         """The Jacobian: rows as `JACOBIAN_ROWS`, one column an axis, per radian for an axis in degrees."""
@@ -383,6 +413,10 @@ class Mechanism(ABC):
 
     @abstractmethod
     def _image(self) -> Image | Status: ...
+
+    @abstractmethod
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits once more, with reasons."""
 
     @abstractmethod
     def _array_programs(self) -> Programs: ...

@@ -81,6 +81,16 @@ class Solution(NamedTuple):
     status: Status
 
 
+class Diagnosis(NamedTuple):
+    """Why the inverse refuses: OK, with an empty reason, where it does not."""
+
+    status: Status
+    reason: str
+    """What refused and why, with the name of the quantity."""
+    missing: float
+    """How much that quantity is short, in its own unit; 0 where that means nothing."""
+
+
 class Singularity(NamedTuple):
     """How far a pose is from every singularity."""
 

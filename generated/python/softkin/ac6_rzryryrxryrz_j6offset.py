@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 168 additions, 184 multiplications, 43 divisions, 1 square roots, 16 sines
-    inverse: 79333 additions, 160330 multiplications, 19830 divisions, 7205 square roots, 14412 sines
-    inverse, all 16 branches open: 1269328 additions, 2565280 multiplications, 317280 divisions, 115280 square roots, 230592 sines
+    inverse: 79334 additions, 160330 multiplications, 19830 divisions, 7205 square roots, 14412 sines
+    inverse, all 16 branches open: 1269329 additions, 2565280 multiplications, 317280 divisions, 115280 square roots, 230592 sines
     search along the joint, from its reference outwards: at most 1800 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse searches along A6, from the reference
@@ -48,13 +48,16 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, solve, sqrt
-from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -753,7 +756,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
             *(a2 + effective_q3_closed - reach_closed)*(a2 + reach_closed - effective_q3_closed)
             /(swing_scale_q3_closed*swing_scale_q3_closed)
         )
-        # out of reach
+        # q3: out of reach
         if not ((sine_square_q3_closed >= -1e-12) or (searched > 0.5)):
             return Status.UNREACHABLE
         # without the offset there is no second crossing
@@ -936,7 +939,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
             touching = next_touching
         else:
             return Status.UNREACHABLE
-        # no root in this branch
+        # A6: the search along it finds no root of this branch
         if not ((accepted > 0.5) or (searched < 0.5)):
             return Status.UNREACHABLE
         if searched > 0.5:
@@ -1287,6 +1290,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.ac6_rzryryrxryrz_j6offset import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 171 additions, 169 multiplications, 39 divisions, 10 square roots, 18 sines
-    inverse, all 8 branches open: 1368 additions, 1352 multiplications, 312 divisions, 80 square roots, 144 sines
+    inverse: 172 additions, 169 multiplications, 39 divisions, 10 square roots, 18 sines
+    inverse, all 8 branches open: 1369 additions, 1352 multiplications, 312 divisions, 80 square roots, 144 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -40,14 +40,17 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.ac6_threeparallel import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -642,7 +645,7 @@ class Ac6ThreeParallel(Mechanism):
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return Status.UNREACHABLE
         if distance_q1 > 1e-11*machine_scale:
@@ -763,7 +766,7 @@ class Ac6ThreeParallel(Mechanism):
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (a3 + reach - a2)*(a2 + a3 + reach)*(a2 + a3 - reach)*(a2 + reach - a3)/(scale_q3*scale_q3)
-        # out of reach
+        # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
         cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
@@ -1020,6 +1023,12 @@ class Ac6ThreeParallel(Mechanism):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.ac6_threeparallel import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

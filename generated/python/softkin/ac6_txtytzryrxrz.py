@@ -22,8 +22,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 31 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
-    inverse: 69 additions, 58 multiplications, 11 divisions, 1 square roots, 5 sines
-    inverse, all 2 branches open: 138 additions, 116 multiplications, 22 divisions, 2 square roots, 10 sines
+    inverse: 70 additions, 58 multiplications, 11 divisions, 1 square roots, 5 sines
+    inverse, all 2 branches open: 139 additions, 116 multiplications, 22 divisions, 2 square roots, 10 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -33,14 +33,17 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.ac6_txtytzryrxrz import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -671,6 +674,12 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.ac6_txtytzryrxrz import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

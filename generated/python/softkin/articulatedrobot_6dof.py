@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 66 additions, 68 multiplications, 8 divisions, 0 square roots, 14 sines
-    inverse: 135 additions, 134 multiplications, 32 divisions, 6 square roots, 12 sines
-    inverse, all 8 branches open: 1080 additions, 1072 multiplications, 256 divisions, 48 square roots, 96 sines
+    inverse: 136 additions, 134 multiplications, 32 divisions, 6 square roots, 12 sines
+    inverse, all 8 branches open: 1081 additions, 1072 multiplications, 256 divisions, 48 square roots, 96 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -40,14 +40,17 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.articulatedrobot_6dof import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -668,7 +671,7 @@ class ArticulatedRobot6DOF(Mechanism):
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return Status.UNREACHABLE
         if distance_q1 > 1e-11*machine_scale:
@@ -689,7 +692,7 @@ class ArticulatedRobot6DOF(Mechanism):
             (effective_q3 + reach - a2)*(a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)
             *(a2 + reach - effective_q3)/(swing_scale_q3*swing_scale_q3)
         )
-        # out of reach
+        # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
@@ -981,6 +984,12 @@ class ArticulatedRobot6DOF(Mechanism):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.articulatedrobot_6dof import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 30 additions, 29 multiplications, 6 divisions, 1 square roots, 4 sines
-    inverse: 61 additions, 53 multiplications, 19 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 244 additions, 212 multiplications, 76 divisions, 16 square roots, 8 sines
+    inverse: 62 additions, 53 multiplications, 19 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 245 additions, 212 multiplications, 76 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -32,15 +32,18 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.bipod_rotary import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -388,7 +391,7 @@ class BipodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         span_1_x = displacement + x - tcp_displacement  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
@@ -398,12 +401,12 @@ class BipodRotary(OffsetKinematics):
             (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
             *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return Status.UNREACHABLE
         span_2_x = tcp_displacement + x - displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
@@ -413,7 +416,7 @@ class BipodRotary(OffsetKinematics):
             (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
             *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
@@ -625,7 +628,7 @@ class BipodRotary(OffsetKinematics):
         flange_x = x - point_x  # the flange behind the point
         span_1_x = displacement + flange_x - tcp_displacement  # rod 1
         effective_a1 = sqrt(flange_y*flange_y + span_1_x*span_1_x)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
@@ -635,12 +638,12 @@ class BipodRotary(OffsetKinematics):
             (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
             *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return Status.UNREACHABLE
         span_2_x = flange_x + tcp_displacement - displacement  # rod 2
         effective_a2 = sqrt(flange_y*flange_y + span_2_x*span_2_x)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
@@ -650,7 +653,7 @@ class BipodRotary(OffsetKinematics):
             (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
             *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
@@ -742,6 +745,12 @@ class BipodRotary(OffsetKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.bipod_rotary import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

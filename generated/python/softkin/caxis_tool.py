@@ -14,7 +14,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 7 additions, 5 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 31 additions, 32 multiplications, 5 divisions, 1 square roots, 1 sines
+    inverse: 32 additions, 32 multiplications, 5 divisions, 1 square roots, 1 sines
 
 With an X or Y offset it can only be combined with a flange that keeps its orientation.
 
@@ -26,16 +26,19 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.caxis_tool import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import OrientationPrograms
 
 
@@ -392,6 +395,12 @@ class CAxisTool(OrientationKinematics, TwistChoice):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.caxis_tool import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

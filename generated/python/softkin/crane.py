@@ -17,7 +17,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 11 additions, 7 multiplications, 1 divisions, 0 square roots, 4 sines
-    inverse: 25 additions, 25 multiplications, 11 divisions, 2 square roots, 6 sines
+    inverse: 26 additions, 25 multiplications, 11 divisions, 2 square roots, 6 sines
 
 On the vertical the azimuth is the reference's; at the origin the polar angle is too.
 
@@ -29,15 +29,18 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.crane import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -499,6 +502,12 @@ class Crane(OffsetKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.crane import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

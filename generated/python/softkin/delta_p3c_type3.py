@@ -25,8 +25,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 82 additions, 122 multiplications, 10 divisions, 1 square roots, 6 sines
-    inverse: 125 additions, 168 multiplications, 28 divisions, 6 square roots, 3 sines
-    inverse, all 8 branches open: 1000 additions, 1344 multiplications, 224 divisions, 48 square roots, 24 sines
+    inverse: 126 additions, 168 multiplications, 28 divisions, 6 square roots, 3 sines
+    inverse, all 8 branches open: 1001 additions, 1344 multiplications, 224 divisions, 48 square roots, 24 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -36,15 +36,18 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.delta_p3c_type3 import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -712,7 +715,7 @@ class DeltaP3CType3(OffsetKinematics):
         span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm_1):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
@@ -729,14 +732,14 @@ class DeltaP3CType3(OffsetKinematics):
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return Status.UNREACHABLE
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm_2):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
@@ -753,14 +756,14 @@ class DeltaP3CType3(OffsetKinematics):
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 1e-9*inner_arm_3):
             return Status.UNREACHABLE
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
@@ -777,7 +780,7 @@ class DeltaP3CType3(OffsetKinematics):
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a1 = (
@@ -1230,7 +1233,7 @@ class DeltaP3CType3(OffsetKinematics):
         span_1_y = flange_y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + flange_z*flange_z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm_1):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
@@ -1247,14 +1250,14 @@ class DeltaP3CType3(OffsetKinematics):
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return Status.UNREACHABLE
         span_2_x = flange_x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = flange_y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + flange_z*flange_z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm_2):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
@@ -1271,14 +1274,14 @@ class DeltaP3CType3(OffsetKinematics):
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         span_3_x = flange_x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = flange_y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + flange_z*flange_z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 1e-9*inner_arm_3):
             return Status.UNREACHABLE
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
@@ -1295,7 +1298,7 @@ class DeltaP3CType3(OffsetKinematics):
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a1 = (
@@ -1501,6 +1504,12 @@ class DeltaP3CType3(OffsetKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.delta_p3c_type3 import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

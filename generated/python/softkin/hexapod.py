@@ -20,7 +20,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 4280 additions, 4922 multiplications, 1400 divisions, 140 square roots, 120 sines
-    inverse: 279 additions, 359 multiplications, 51 divisions, 6 square roots, 0 sines
+    inverse: 280 additions, 360 multiplications, 51 divisions, 8 square roots, 2 sines
     Newton's method: every pass improves the pose until the rods fit: at most 20 passes, all of which are counted
 
 Six lengths allow up to 40 poses. Forward kinematics finds the one in the assembly mode of the home pose, by
@@ -45,15 +45,18 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._scalar import DEGREE, cos, root, sin, solve, sqrt
 from softkin._start import IterativeForward
-from softkin._types import Axis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.hexapod import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import StartedPrograms
 
 
@@ -1600,41 +1603,53 @@ class Hexapod(IterativeForward):
         # l1: quadratic in the rod 1 equation
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
+        # leg 1: without length it has no direction
+        if not (l1 > 1e-9*machine_scale):
+            return Status.UNREACHABLE
         span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
         span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
         span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z  # rod 2
         # l2: quadratic in the rod 2 equation
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
+        # leg 2: without length it has no direction
+        if not (l2 > 1e-9*machine_scale):
+            return Status.UNREACHABLE
         span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
         span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
         span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z  # rod 3
         # l3: quadratic in the rod 3 equation
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
+        # leg 3: without length it has no direction
+        if not (l3 > 1e-9*machine_scale):
+            return Status.UNREACHABLE
         span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
         span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
         span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z  # rod 4
         # l4: quadratic in the rod 4 equation
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
+        # leg 4: without length it has no direction
+        if not (l4 > 1e-9*machine_scale):
+            return Status.UNREACHABLE
         span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
         span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
         span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z  # rod 5
         # l5: quadratic in the rod 5 equation
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
+        # leg 5: without length it has no direction
+        if not (l5 > 1e-9*machine_scale):
+            return Status.UNREACHABLE
         span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
         span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
         span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z  # rod 6
         # l6: quadratic in the rod 6 equation
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
-        # a leg without length has no direction
-        if not (
-            l1 > 1e-9*machine_scale and l2 > 1e-9*machine_scale and l3 > 1e-9*machine_scale
-            and l4 > 1e-9*machine_scale and l5 > 1e-9*machine_scale and l6 > 1e-9*machine_scale
-        ):
+        # leg 6: without length it has no direction
+        if not (l6 > 1e-9*machine_scale):
             return Status.UNREACHABLE
         # leg 1: its direction, and the moment of that about the platform's origin
         divisor_1 = l1 if l1 > 1e-9*machine_scale else 1.0
@@ -1642,73 +1657,95 @@ class Hexapod(IterativeForward):
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
+        # leg 1: its joint on the base bends beyond its cone
+        if not (cos_base_lean_1 >= least_cos_base):
+            return Status.UNREACHABLE
         # leg 2: its direction, and the moment of that about the platform's origin
         divisor_2 = l2 if l2 > 1e-9*machine_scale else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
         along_2_z = span_2_z/divisor_2
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
+        # leg 2: its joint on the base bends beyond its cone
+        if not (cos_base_lean_2 >= least_cos_base):
+            return Status.UNREACHABLE
         # leg 3: its direction, and the moment of that about the platform's origin
         divisor_3 = l3 if l3 > 1e-9*machine_scale else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
         along_3_z = span_3_z/divisor_3
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
+        # leg 3: its joint on the base bends beyond its cone
+        if not (cos_base_lean_3 >= least_cos_base):
+            return Status.UNREACHABLE
         # leg 4: its direction, and the moment of that about the platform's origin
         divisor_4 = l4 if l4 > 1e-9*machine_scale else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
         along_4_z = span_4_z/divisor_4
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
+        # leg 4: its joint on the base bends beyond its cone
+        if not (cos_base_lean_4 >= least_cos_base):
+            return Status.UNREACHABLE
         # leg 5: its direction, and the moment of that about the platform's origin
         divisor_5 = l5 if l5 > 1e-9*machine_scale else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
         along_5_z = span_5_z/divisor_5
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
+        # leg 5: its joint on the base bends beyond its cone
+        if not (cos_base_lean_5 >= least_cos_base):
+            return Status.UNREACHABLE
         # leg 6: its direction, and the moment of that about the platform's origin
         divisor_6 = l6 if l6 > 1e-9*machine_scale else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
         along_6_z = span_6_z/divisor_6
         cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
-        # a joint on the base bends beyond its cone
-        if not (
-            cos_base_lean_1 >= least_cos_base and cos_base_lean_2 >= least_cos_base
-            and cos_base_lean_3 >= least_cos_base and cos_base_lean_4 >= least_cos_base
-            and cos_base_lean_5 >= least_cos_base and cos_base_lean_6 >= least_cos_base
-        ):
+        # leg 6: its joint on the base bends beyond its cone
+        if not (cos_base_lean_6 >= least_cos_base):
             return Status.UNREACHABLE
         cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
         cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
         cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
         cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
+        # leg 1: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_1 >= least_cos_plate):
+            return Status.UNREACHABLE
         cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
         cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
         cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
         cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
+        # leg 2: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_2 >= least_cos_plate):
+            return Status.UNREACHABLE
         cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
         cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
         cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
         cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
+        # leg 3: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_3 >= least_cos_plate):
+            return Status.UNREACHABLE
         cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
         cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
         cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
         cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
+        # leg 4: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_4 >= least_cos_plate):
+            return Status.UNREACHABLE
         cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
         cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
         cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
         cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
+        # leg 5: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_5 >= least_cos_plate):
+            return Status.UNREACHABLE
         cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
         cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
         cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
         cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
-        # a joint on the plate bends beyond its cone
-        if not (
-            cos_plate_lean_1 >= least_cos_plate and cos_plate_lean_2 >= least_cos_plate
-            and cos_plate_lean_3 >= least_cos_plate and cos_plate_lean_4 >= least_cos_plate
-            and cos_plate_lean_5 >= least_cos_plate and cos_plate_lean_6 >= least_cos_plate
-        ):
+        # leg 6: its joint on the plate bends beyond its cone
+        if not (cos_plate_lean_6 >= least_cos_plate):
             return Status.UNREACHABLE
         arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
         arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
@@ -1925,6 +1962,12 @@ class Hexapod(IterativeForward):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.hexapod import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> StartedPrograms:
         """The programs on arrays."""

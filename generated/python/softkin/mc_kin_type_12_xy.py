@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 84 additions, 209 multiplications, 17 divisions, 1 square roots, 4 sines
-    inverse: 111 additions, 260 multiplications, 35 divisions, 6 square roots, 2 sines
-    inverse, all 4 branches open: 444 additions, 1040 multiplications, 140 divisions, 24 square roots, 8 sines
+    inverse: 112 additions, 260 multiplications, 35 divisions, 6 square roots, 2 sines
+    inverse, all 4 branches open: 445 additions, 1040 multiplications, 140 divisions, 24 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -32,15 +32,18 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.mc_kin_type_12_xy import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -541,7 +544,7 @@ class KinType12XY(OffsetKinematics):
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*link_length_1):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
@@ -552,7 +555,7 @@ class KinType12XY(OffsetKinematics):
             *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a1 = (
@@ -580,7 +583,7 @@ class KinType12XY(OffsetKinematics):
             /link_length_2
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*link_length_5):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_5 else 1.0
@@ -617,7 +620,7 @@ class KinType12XY(OffsetKinematics):
             )
             /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
@@ -1051,7 +1054,7 @@ class KinType12XY(OffsetKinematics):
         span_upper_y = flange_y + flange_x*swap_xy - flange_y*swap_xy  # rod upper
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*link_length_1):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
@@ -1062,7 +1065,7 @@ class KinType12XY(OffsetKinematics):
             *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a1 = (
@@ -1090,7 +1093,7 @@ class KinType12XY(OffsetKinematics):
             /link_length_2
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*link_length_5):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_5 else 1.0
@@ -1127,7 +1130,7 @@ class KinType12XY(OffsetKinematics):
             )
             /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
@@ -1323,6 +1326,12 @@ class KinType12XY(OffsetKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.mc_kin_type_12_xy import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -17,7 +17,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 9 additions, 13 multiplications, 0 divisions, 1 square roots, 0 sines
-    inverse: 7 additions, 6 multiplications, 1 divisions, 1 square roots, 0 sines
+    inverse: 8 additions, 6 multiplications, 1 divisions, 1 square roots, 0 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -27,15 +27,18 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import sqrt
-from softkin._types import Axis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.p2x_type2 import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -468,6 +471,12 @@ class P2XType2(OffsetKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.p2x_type2 import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

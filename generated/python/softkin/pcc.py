@@ -18,8 +18,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 13 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 44 additions, 39 multiplications, 11 divisions, 3 square roots, 4 sines
-    inverse, all 2 branches open: 85 additions, 76 multiplications, 21 divisions, 6 square roots, 8 sines
+    inverse: 45 additions, 39 multiplications, 11 divisions, 3 square roots, 4 sines
+    inverse, all 2 branches open: 86 additions, 76 multiplications, 21 divisions, 6 square roots, 8 sines
 
 Angles are right-handed about +Z.
 
@@ -31,15 +31,18 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.pcc import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -323,7 +326,7 @@ class PCC(OffsetKinematics):
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
             /(scale_a2_from_a1*scale_a2_from_a1)
         )
-        # out of reach
+        # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return Status.UNREACHABLE
         cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
@@ -459,7 +462,7 @@ class PCC(OffsetKinematics):
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
             /(scale_a2_from_a1*scale_a2_from_a1)
         )
-        # out of reach
+        # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return Status.UNREACHABLE
         cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
@@ -516,6 +519,12 @@ class PCC(OffsetKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.pcc import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

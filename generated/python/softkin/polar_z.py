@@ -16,7 +16,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 9 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 12 additions, 9 multiplications, 5 divisions, 1 square roots, 3 sines
+    inverse: 13 additions, 9 multiplications, 5 divisions, 1 square roots, 3 sines
 
 As CODESYS's own block it has no orientation mode "Axis": a point beside the arm has two radii.
 
@@ -30,14 +30,17 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.polar_z import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -398,6 +401,12 @@ class PolarZ(Mechanism):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.polar_z import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

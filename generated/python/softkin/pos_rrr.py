@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 30 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
-    inverse: 63 additions, 58 multiplications, 21 divisions, 5 square roots, 7 sines
-    inverse, all 4 branches open: 252 additions, 232 multiplications, 84 divisions, 20 square roots, 28 sines
+    inverse: 64 additions, 58 multiplications, 21 divisions, 5 square roots, 7 sines
+    inverse, all 4 branches open: 253 additions, 232 multiplications, 84 divisions, 20 square roots, 28 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -32,15 +32,18 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.pos_rrr import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -417,7 +420,7 @@ class PosRRR(OffsetKinematics):
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return Status.UNREACHABLE
         if distance_q1 > 1e-11*machine_scale:
@@ -437,7 +440,7 @@ class PosRRR(OffsetKinematics):
             (effective_q3_2 + reach - a2)*(a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)
             *(a2 + reach - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
         )
-        # out of reach
+        # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
@@ -676,13 +679,13 @@ class PosRRR(OffsetKinematics):
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 + tool_z)*(distance_q1 - tool_z)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return Status.UNREACHABLE
         tool_x = a3 + point_x  # the point seen from the last moving joint
         tool_y = -d4 - point_z  # the point seen from the last moving joint
         effective_q3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # q3: its effective length is too short
         if not (effective_q3 > 1e-9*a2):
             return Status.UNREACHABLE
         if distance_q1 > 1e-11*machine_scale:
@@ -704,7 +707,7 @@ class PosRRR(OffsetKinematics):
             (divisor_q3 + reach - a2)*(a2 + divisor_q3 + reach)*(a2 + divisor_q3 - reach)*(a2 + reach - divisor_q3)
             /(swing_scale_q3*swing_scale_q3)
         )
-        # out of reach
+        # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_q3 = (reach*reach - a2*a2 - divisor_q3*divisor_q3)/swing_scale_q3
@@ -806,6 +809,12 @@ class PosRRR(OffsetKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.pos_rrr import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -19,8 +19,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 15 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 40 additions, 32 multiplications, 10 divisions, 3 square roots, 4 sines
-    inverse, all 2 branches open: 80 additions, 64 multiplications, 20 divisions, 6 square roots, 8 sines
+    inverse: 41 additions, 32 multiplications, 10 divisions, 3 square roots, 4 sines
+    inverse, all 2 branches open: 81 additions, 64 multiplications, 20 divisions, 6 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -30,15 +30,18 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.scara3_ccz import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -323,7 +326,7 @@ class Scara3CCZ(OffsetKinematics):
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
@@ -471,7 +474,7 @@ class Scara3CCZ(OffsetKinematics):
             return Status.BAD_INPUT
         tool_x = link_length_2 + point_x  # the point seen from the last moving joint
         effective_a2 = sqrt(point_y*point_y + tool_x*tool_x)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*link_length_1):
             return Status.UNREACHABLE
         reach = sqrt(x*x + y*y)
@@ -482,7 +485,7 @@ class Scara3CCZ(OffsetKinematics):
             (link_length_1 + reach - divisor_a2)*(divisor_a2 + link_length_1 + reach)
             *(divisor_a2 + link_length_1 - reach)*(divisor_a2 + reach - link_length_1)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a2 = (reach*reach - divisor_a2*divisor_a2 - link_length_1*link_length_1)/swing_scale_a2
@@ -548,6 +551,12 @@ class Scara3CCZ(OffsetKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.scara3_ccz import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

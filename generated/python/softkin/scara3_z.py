@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 80 additions, 75 multiplications, 15 divisions, 4 square roots, 5 sines
-    inverse, all 2 branches open: 160 additions, 150 multiplications, 30 divisions, 8 square roots, 10 sines
+    inverse: 81 additions, 75 multiplications, 15 divisions, 4 square roots, 5 sines
+    inverse, all 2 branches open: 161 additions, 150 multiplications, 30 divisions, 8 square roots, 10 sines
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
 
@@ -33,15 +33,18 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.scara3_z import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -418,7 +421,7 @@ class Scara3Z(TwistChoice):
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
             *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
@@ -613,6 +616,12 @@ class Scara3Z(TwistChoice):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.scara3_z import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

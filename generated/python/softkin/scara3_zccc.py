@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 80 additions, 75 multiplications, 15 divisions, 4 square roots, 5 sines
-    inverse, all 2 branches open: 160 additions, 150 multiplications, 30 divisions, 8 square roots, 10 sines
+    inverse: 81 additions, 75 multiplications, 15 divisions, 4 square roots, 5 sines
+    inverse, all 2 branches open: 161 additions, 150 multiplications, 30 divisions, 8 square roots, 10 sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
 
@@ -36,16 +36,19 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.scara3_zccc import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -422,7 +425,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return Status.UNREACHABLE
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
@@ -644,7 +647,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         tool_x = link_length_2 + link_length_3*cos_a4 + point_x*cos_a4 - point_y*sin_a4
         tool_y = point_y*cos_a4 + link_length_3*sin_a4 + point_x*sin_a4  # the point seen from the last moving joint
         effective_a3 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 1e-9*link_length_1):
             return Status.UNREACHABLE
         reach = sqrt(x*x + y*y)
@@ -655,7 +658,7 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
             (link_length_1 + reach - divisor_a3)*(divisor_a3 + link_length_1 + reach)
             *(divisor_a3 + link_length_1 - reach)*(divisor_a3 + reach - link_length_1)/(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a3 = (reach*reach - divisor_a3*divisor_a3 - link_length_1*link_length_1)/swing_scale_a3
@@ -728,6 +731,12 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.scara3_zccc import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

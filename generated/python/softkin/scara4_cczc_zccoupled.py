@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 29 additions, 15 multiplications, 5 divisions, 0 square roots, 7 sines
-    inverse: 83 additions, 81 multiplications, 17 divisions, 4 square roots, 5 sines
-    inverse, all 2 branches open: 166 additions, 162 multiplications, 34 divisions, 8 square roots, 10 sines
+    inverse: 84 additions, 81 multiplications, 17 divisions, 4 square roots, 5 sines
+    inverse, all 2 branches open: 167 additions, 162 multiplications, 34 divisions, 8 square roots, 10 sines
 
 The coupling may be given as travel per turn (pitch) or per degree (gear coupling), never both.
 
@@ -36,16 +36,19 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.scara4_cczc_zccoupled import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -477,7 +480,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
@@ -703,7 +706,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         # the point seen from the last moving joint
         tool_y = point_y*cos_a4 + point_x*sin_a4 - 2.0*flange_down*point_y*cos_a4
         effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*link_length_1):
             return Status.UNREACHABLE
         reach = sqrt(x*x + y*y)
@@ -714,7 +717,7 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             (link_length_1 + reach - divisor_a2)*(divisor_a2 + link_length_1 + reach)
             *(divisor_a2 + link_length_1 - reach)*(divisor_a2 + reach - link_length_1)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a2 = (reach*reach - divisor_a2*divisor_a2 - link_length_1*link_length_1)/swing_scale_a2
@@ -790,6 +793,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.scara4_cczc_zccoupled import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 25 additions, 9 multiplications, 4 divisions, 0 square roots, 7 sines
-    inverse: 80 additions, 76 multiplications, 16 divisions, 4 square roots, 5 sines
-    inverse, all 2 branches open: 160 additions, 152 multiplications, 32 divisions, 8 square roots, 10 sines
+    inverse: 81 additions, 76 multiplications, 16 divisions, 4 square roots, 5 sines
+    inverse, all 2 branches open: 161 additions, 152 multiplications, 32 divisions, 8 square roots, 10 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -31,16 +31,19 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.scara4_zccoupled_type1 import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -425,7 +428,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
@@ -632,7 +635,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         tool_x = link_length_2 + point_x*cos_a4 - point_y*sin_a4  # the point seen from the last moving joint
         tool_y = point_y*cos_a4 + point_x*sin_a4  # the point seen from the last moving joint
         effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*link_length_1):
             return Status.UNREACHABLE
         reach = sqrt(x*x + y*y)
@@ -643,7 +646,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             (link_length_1 + reach - divisor_a2)*(divisor_a2 + link_length_1 + reach)
             *(divisor_a2 + link_length_1 - reach)*(divisor_a2 + reach - link_length_1)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a2 = (reach*reach - divisor_a2*divisor_a2 - link_length_1*link_length_1)/swing_scale_a2
@@ -715,6 +718,12 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.scara4_zccoupled_type1 import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 28 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 100 additions, 95 multiplications, 23 divisions, 4 square roots, 5 sines
-    inverse, all 2 branches open: 194 additions, 184 multiplications, 44 divisions, 8 square roots, 10 sines
+    inverse: 101 additions, 95 multiplications, 23 divisions, 4 square roots, 5 sines
+    inverse, all 2 branches open: 195 additions, 184 multiplications, 44 divisions, 8 square roots, 10 sines
 
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
 
@@ -38,16 +38,19 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.sccc import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -501,7 +504,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
@@ -804,7 +807,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         tool_x = link_length_2 + link_length_3*cos_a3 + point_x*cos_a3 - point_y*sin_a3
         tool_y = point_y*cos_a3 + link_length_3*sin_a3 + point_x*sin_a3  # the point seen from the last moving joint
         effective_a2 = sqrt(tool_x*tool_x + tool_y*tool_y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*link_length_1):
             return Status.UNREACHABLE
         reach = sqrt(x*x + y*y)
@@ -815,7 +818,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             (link_length_1 + reach - divisor_a2)*(divisor_a2 + link_length_1 + reach)
             *(divisor_a2 + link_length_1 - reach)*(divisor_a2 + reach - link_length_1)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a2 = (reach*reach - divisor_a2*divisor_a2 - link_length_1*link_length_1)/swing_scale_a2
@@ -900,6 +903,12 @@ class SCCC(OffsetKinematics, TwistChoice):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.sccc import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

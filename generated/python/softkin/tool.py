@@ -26,15 +26,18 @@ Verified at 6 poses, before it was written, by a witness that knows the closure 
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import sqrt
-from softkin._types import Axis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.tool import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import OrientationPrograms
 
 
@@ -226,6 +229,12 @@ class Tool(OrientationKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.tool import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> OrientationPrograms:
         """The programs on arrays."""

@@ -22,8 +22,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 59 additions, 109 multiplications, 7 divisions, 13 square roots, 0 sines
-    inverse: 77 additions, 151 multiplications, 6 divisions, 21 square roots, 0 sines
-    inverse, all 8 branches open: 616 additions, 1208 multiplications, 48 divisions, 168 square roots, 0 sines
+    inverse: 83 additions, 162 multiplications, 15 divisions, 26 square roots, 2 sines
+    inverse, all 8 branches open: 657 additions, 1296 multiplications, 120 divisions, 208 square roots, 16 sines
 
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -33,15 +33,18 @@ Verified at 120 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, cos, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.tripod_linear import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -1033,6 +1036,12 @@ class TripodLinear(OffsetKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.tripod_linear import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

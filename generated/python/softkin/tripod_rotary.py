@@ -25,8 +25,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 117 additions, 209 multiplications, 10 divisions, 34 square roots, 6 sines
-    inverse: 165 additions, 258 multiplications, 33 divisions, 41 square roots, 3 sines
-    inverse, all 8 branches open: 1320 additions, 2064 multiplications, 264 divisions, 328 square roots, 24 sines
+    inverse: 166 additions, 260 multiplications, 33 divisions, 46 square roots, 3 sines
+    inverse, all 8 branches open: 1321 additions, 2080 multiplications, 264 divisions, 368 square roots, 24 sines
 
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -36,15 +36,18 @@ Verified at 120 poses, before it was written, by a witness that knows the closur
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.tripod_rotary import unrolled
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from softkin._array import Programs
 
 
@@ -668,7 +671,7 @@ class TripodRotary(OffsetKinematics):
             )
         )
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*arm_length_1):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
@@ -685,7 +688,7 @@ class TripodRotary(OffsetKinematics):
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return Status.UNREACHABLE
         span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
@@ -697,7 +700,7 @@ class TripodRotary(OffsetKinematics):
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 5e-10*arm_length_1):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
@@ -714,7 +717,7 @@ class TripodRotary(OffsetKinematics):
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         # rod 3
@@ -724,7 +727,7 @@ class TripodRotary(OffsetKinematics):
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 5e-10*arm_length_1):
             return Status.UNREACHABLE
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
@@ -741,7 +744,7 @@ class TripodRotary(OffsetKinematics):
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a1 = (
@@ -1348,7 +1351,7 @@ class TripodRotary(OffsetKinematics):
             )
         )
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*arm_length_1):
             return Status.UNREACHABLE
         flange_y = y - point_y  # the flange behind the point
@@ -1366,7 +1369,7 @@ class TripodRotary(OffsetKinematics):
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return Status.UNREACHABLE
         # rod 2
@@ -1379,7 +1382,7 @@ class TripodRotary(OffsetKinematics):
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 5e-10*arm_length_1):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
@@ -1396,7 +1399,7 @@ class TripodRotary(OffsetKinematics):
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return Status.UNREACHABLE
         # rod 3
@@ -1406,7 +1409,7 @@ class TripodRotary(OffsetKinematics):
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 5e-10*arm_length_1):
             return Status.UNREACHABLE
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
@@ -1423,7 +1426,7 @@ class TripodRotary(OffsetKinematics):
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return Status.UNREACHABLE
         cos_swing_a1 = (
@@ -1703,6 +1706,12 @@ class TripodRotary(OffsetKinematics):
 
     def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         return self._unrolled.branch(frame, signs, reference)
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits, with reasons."""
+        from softkin._diagnosis.tripod_rotary import branch, limits
+
+        return partial(branch, self._constants), partial(limits, self._constants)
 
     def _array_programs(self) -> Programs:
         """The programs on arrays."""

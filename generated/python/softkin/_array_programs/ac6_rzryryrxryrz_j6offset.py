@@ -330,7 +330,7 @@ class ArrayPrograms(Programs):
             *(a2 + effective_q3_closed - reach_closed)*(a2 + reach_closed - effective_q3_closed)
             /(swing_scale_q3_closed*swing_scale_q3_closed)
         )
-        # out of reach
+        # q3: out of reach
         require(status, (sine_square_q3_closed >= -1e-12) | (searched > 0.5), Status.UNREACHABLE)
         # without the offset there is no second crossing
         require(status, (searched > 0.5) | (sigma_crossing > 0.0), Status.UNREACHABLE)
@@ -526,7 +526,7 @@ class ArrayPrograms(Programs):
                 ),
             )
         require(status, done, Status.UNREACHABLE)
-        # no root in this branch
+        # A6: the search along it finds no root of this branch
         require(status, (accepted > 0.5) | (searched < 0.5), Status.UNREACHABLE)
         if everywhere(searched > 0.5):
             cos_q1 = cos_q1_tried

@@ -215,7 +215,7 @@ class ArrayPrograms(Programs):
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
         if everywhere(distance_q1 > 1e-11*machine_scale):
             cos_swing_q1 = -d4/divisor_q1
@@ -355,7 +355,7 @@ class ArrayPrograms(Programs):
         reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (a3 + reach - a2)*(a2 + a3 + reach)*(a2 + a3 - reach)*(a2 + reach - a3)/(scale_q3*scale_q3)
-        # out of reach
+        # q3: out of reach
         require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
         cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
         sin_q3 = root(sine_square_q3)*sigma_elbow
@@ -545,7 +545,7 @@ class ArrayPrograms(Programs):
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
         if everywhere(distance_q1 > 1e-11*machine_scale):
             cos_swing_q1 = -d4/divisor_q1
@@ -1557,7 +1557,7 @@ class ArrayPrograms(Programs):
                 across_q2_right_down_up/length_q2_right_down_up,
                 sin(free_a2),
             )
-        refusal_left_down = select(sine_square_q3_left_down >= -1e-12, 0.0, 3.0)  # out of reach
+        refusal_left_down = select(sine_square_q3_left_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -1622,7 +1622,7 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_left_down = nearest_period(offset_a6 + atan2(sin_q6_left_down, cos_q6_left_down)/DEGREE, near_a6)
-        refusal_right_down = select(sine_square_q3_right_down >= -1e-12, 0.0, 3.0)  # out of reach
+        refusal_right_down = select(sine_square_q3_right_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
         axis_a1_right = nearest_period(offset_a1 + atan2(sin_q1_right, cos_q1_right)/DEGREE, near_a1)  # A1: its turn
         # A2: its turn
         axis_a2_right_up_down = nearest_period(
@@ -1701,7 +1701,7 @@ class ArrayPrograms(Programs):
         axis_a4_right_down_down = nearest_period(
             offset_a4 + atan2(sin_q4_right_down_down, cos_q4_right_down_down)/DEGREE, near_a4,
         )
-        refusal_left_up = select(sine_square_q3_left_up >= -1e-12, 0.0, 3.0)  # out of reach
+        refusal_left_up = select(sine_square_q3_left_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
         # A2: its turn
         axis_a2_left_up_up = nearest_period(offset_a2 + atan2(sin_q2_left_up_up, cos_q2_left_up_up)/DEGREE, near_a2)
         # A3: its turn
@@ -1721,7 +1721,7 @@ class ArrayPrograms(Programs):
         axis_a5_left_up = nearest_period(offset_a5 + atan2(-radius_q6_left, -r23_from_q1_left)/DEGREE, near_a5)
         # A6: its turn
         axis_a6_left_up = nearest_period(offset_a6 + atan2(sin_q6_left_up, cos_q6_left_up)/DEGREE, near_a6)
-        refusal_right_up = select(sine_square_q3_right_up >= -1e-12, 0.0, 3.0)  # out of reach
+        refusal_right_up = select(sine_square_q3_right_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
         # A2: its turn
         axis_a2_right_up_up = nearest_period(
             offset_a2 + atan2(sin_q2_right_up_up, cos_q2_right_up_up)/DEGREE, near_a2,

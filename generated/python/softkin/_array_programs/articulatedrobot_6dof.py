@@ -223,7 +223,7 @@ class ArrayPrograms(Programs):
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
         if everywhere(distance_q1 > 1e-11*machine_scale):
             cos_swing_q1 = -d3/divisor_q1
@@ -254,7 +254,7 @@ class ArrayPrograms(Programs):
             (effective_q3 + reach - a2)*(a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)
             *(a2 + reach - effective_q3)/(swing_scale_q3*swing_scale_q3)
         )
-        # out of reach
+        # q3: out of reach
         require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
         sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
@@ -473,7 +473,7 @@ class ArrayPrograms(Programs):
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
         if everywhere(distance_q1 > 1e-11*machine_scale):
             cos_swing_q1 = -d3/divisor_q1
@@ -807,7 +807,7 @@ class ArrayPrograms(Programs):
             # its reference where it is free
             cos_q4_back_up_up = select(radius_q4_back_up > 1e-11, r13_from_q123_back_up/length_q4_back_up, cos(free_a4))
             sin_q4_back_up_up = select(radius_q4_back_up > 1e-11, -r23_from_q1_back/length_q4_back_up, sin(free_a4))
-        refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # out of reach
+        refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # q3: out of reach
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -874,7 +874,7 @@ class ArrayPrograms(Programs):
         axis_a6_front_down_down = nearest_period(
             offset_a6 + atan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down)/DEGREE, near_a6,
         )
-        refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # out of reach
+        refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # q3: out of reach
         axis_a1_back = nearest_period(offset_a1 + atan2(sin_q1_back, cos_q1_back)/DEGREE, near_a1)  # A1: its turn
         # A2: its turn
         axis_a2_back_down = nearest_period(offset_a2 + atan2(sin_q2_back_down, cos_q2_back_down)/DEGREE, near_a2)

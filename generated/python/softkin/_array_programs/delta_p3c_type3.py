@@ -210,7 +210,7 @@ class ArrayPrograms(Programs):
         span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = root(along_a1*along_a1 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*inner_arm_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*inner_arm_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
@@ -226,13 +226,13 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = root(along_a2*along_a2 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*inner_arm_2, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*inner_arm_2, effective_a2, 1.0)
         swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
@@ -248,13 +248,13 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = root(along_a3*along_a3 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         require(status, effective_a3 > 1e-9*inner_arm_3, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 1e-9*inner_arm_3, effective_a3, 1.0)
         swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
@@ -270,7 +270,7 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
         cos_swing_a1 = (
             (inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z - outer_arm_1*outer_arm_1)
@@ -418,7 +418,7 @@ class ArrayPrograms(Programs):
         span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = root(along_a1*along_a1 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*inner_arm_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*inner_arm_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
@@ -434,13 +434,13 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = root(along_a2*along_a2 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*inner_arm_2, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*inner_arm_2, effective_a2, 1.0)
         swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
@@ -456,13 +456,13 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = root(along_a3*along_a3 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         require(status, effective_a3 > 1e-9*inner_arm_3, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 1e-9*inner_arm_3, effective_a3, 1.0)
         swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
@@ -478,7 +478,7 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
         cos_swing_a1 = (
             (inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z - outer_arm_1*outer_arm_1)

@@ -525,125 +525,132 @@ class ArrayPrograms(StartedPrograms):
         # l1: quadratic in the rod 1 equation
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = root(root_square_l1)
+        # leg 1: without length it has no direction
+        require(status, l1 > 1e-9*machine_scale, Status.UNREACHABLE)
         span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
         span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
         span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z  # rod 2
         # l2: quadratic in the rod 2 equation
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = root(root_square_l2)
+        # leg 2: without length it has no direction
+        require(status, l2 > 1e-9*machine_scale, Status.UNREACHABLE)
         span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
         span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
         span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z  # rod 3
         # l3: quadratic in the rod 3 equation
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = root(root_square_l3)
+        # leg 3: without length it has no direction
+        require(status, l3 > 1e-9*machine_scale, Status.UNREACHABLE)
         span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
         span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
         span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z  # rod 4
         # l4: quadratic in the rod 4 equation
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = root(root_square_l4)
+        # leg 4: without length it has no direction
+        require(status, l4 > 1e-9*machine_scale, Status.UNREACHABLE)
         span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
         span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
         span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z  # rod 5
         # l5: quadratic in the rod 5 equation
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = root(root_square_l5)
+        # leg 5: without length it has no direction
+        require(status, l5 > 1e-9*machine_scale, Status.UNREACHABLE)
         span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
         span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
         span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z  # rod 6
         # l6: quadratic in the rod 6 equation
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = root(root_square_l6)
-        # a leg without length has no direction
-        require(
-            status,
-            (
-                (l1 > 1e-9*machine_scale) & (l2 > 1e-9*machine_scale) & (l3 > 1e-9*machine_scale)
-                & (l4 > 1e-9*machine_scale) & (l5 > 1e-9*machine_scale) & (l6 > 1e-9*machine_scale)
-            ),
-            Status.UNREACHABLE,
-        )
+        # leg 6: without length it has no direction
+        require(status, l6 > 1e-9*machine_scale, Status.UNREACHABLE)
         # leg 1: its direction, and the moment of that about the platform's origin
         divisor_1 = select(l1 > 1e-9*machine_scale, l1, 1.0)
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
+        # leg 1: its joint on the base bends beyond its cone
+        require(status, cos_base_lean_1 >= least_cos_base, Status.UNREACHABLE)
         # leg 2: its direction, and the moment of that about the platform's origin
         divisor_2 = select(l2 > 1e-9*machine_scale, l2, 1.0)
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
         along_2_z = span_2_z/divisor_2
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
+        # leg 2: its joint on the base bends beyond its cone
+        require(status, cos_base_lean_2 >= least_cos_base, Status.UNREACHABLE)
         # leg 3: its direction, and the moment of that about the platform's origin
         divisor_3 = select(l3 > 1e-9*machine_scale, l3, 1.0)
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
         along_3_z = span_3_z/divisor_3
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
+        # leg 3: its joint on the base bends beyond its cone
+        require(status, cos_base_lean_3 >= least_cos_base, Status.UNREACHABLE)
         # leg 4: its direction, and the moment of that about the platform's origin
         divisor_4 = select(l4 > 1e-9*machine_scale, l4, 1.0)
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
         along_4_z = span_4_z/divisor_4
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
+        # leg 4: its joint on the base bends beyond its cone
+        require(status, cos_base_lean_4 >= least_cos_base, Status.UNREACHABLE)
         # leg 5: its direction, and the moment of that about the platform's origin
         divisor_5 = select(l5 > 1e-9*machine_scale, l5, 1.0)
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
         along_5_z = span_5_z/divisor_5
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
+        # leg 5: its joint on the base bends beyond its cone
+        require(status, cos_base_lean_5 >= least_cos_base, Status.UNREACHABLE)
         # leg 6: its direction, and the moment of that about the platform's origin
         divisor_6 = select(l6 > 1e-9*machine_scale, l6, 1.0)
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
         along_6_z = span_6_z/divisor_6
         cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
-        # a joint on the base bends beyond its cone
-        require(
-            status,
-            (
-                (cos_base_lean_1 >= least_cos_base) & (cos_base_lean_2 >= least_cos_base)
-                & (cos_base_lean_3 >= least_cos_base) & (cos_base_lean_4 >= least_cos_base)
-                & (cos_base_lean_5 >= least_cos_base) & (cos_base_lean_6 >= least_cos_base)
-            ),
-            Status.UNREACHABLE,
-        )
+        # leg 6: its joint on the base bends beyond its cone
+        require(status, cos_base_lean_6 >= least_cos_base, Status.UNREACHABLE)
         cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
         cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
         cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
         cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
+        # leg 1: its joint on the plate bends beyond its cone
+        require(status, cos_plate_lean_1 >= least_cos_plate, Status.UNREACHABLE)
         cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
         cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
         cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
         cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
+        # leg 2: its joint on the plate bends beyond its cone
+        require(status, cos_plate_lean_2 >= least_cos_plate, Status.UNREACHABLE)
         cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
         cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
         cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
         cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
+        # leg 3: its joint on the plate bends beyond its cone
+        require(status, cos_plate_lean_3 >= least_cos_plate, Status.UNREACHABLE)
         cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
         cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
         cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
         cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
+        # leg 4: its joint on the plate bends beyond its cone
+        require(status, cos_plate_lean_4 >= least_cos_plate, Status.UNREACHABLE)
         cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
         cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
         cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
         cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
+        # leg 5: its joint on the plate bends beyond its cone
+        require(status, cos_plate_lean_5 >= least_cos_plate, Status.UNREACHABLE)
         cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
         cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
         cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
         cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
-        # a joint on the plate bends beyond its cone
-        require(
-            status,
-            (
-                (cos_plate_lean_1 >= least_cos_plate) & (cos_plate_lean_2 >= least_cos_plate)
-                & (cos_plate_lean_3 >= least_cos_plate) & (cos_plate_lean_4 >= least_cos_plate)
-                & (cos_plate_lean_5 >= least_cos_plate) & (cos_plate_lean_6 >= least_cos_plate)
-            ),
-            Status.UNREACHABLE,
-        )
+        # leg 6: its joint on the plate bends beyond its cone
+        require(status, cos_plate_lean_6 >= least_cos_plate, Status.UNREACHABLE)
         arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
         arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
         moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius

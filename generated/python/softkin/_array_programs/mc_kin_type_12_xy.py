@@ -203,7 +203,7 @@ class ArrayPrograms(Programs):
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
         effective_a1 = root(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
@@ -213,7 +213,7 @@ class ArrayPrograms(Programs):
             *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
         cos_swing_a1 = (
             (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
@@ -240,7 +240,7 @@ class ArrayPrograms(Programs):
             /link_length_2
         )
         effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*link_length_5, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*link_length_5, effective_a2, 1.0)
         swing_scale_a2 = 2.0*divisor_a2*link_length_5  # a2: law of cosines in the rod rear equation
@@ -276,7 +276,7 @@ class ArrayPrograms(Programs):
             )
             /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
@@ -397,7 +397,7 @@ class ArrayPrograms(Programs):
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
         effective_a1 = root(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
@@ -407,7 +407,7 @@ class ArrayPrograms(Programs):
             *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
         cos_swing_a1 = (
             (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
@@ -662,7 +662,7 @@ class ArrayPrograms(Programs):
                     *link_length_2
                 )
             )
-            # the effective length is too short to be aimed, out of reach
+            # a2: its effective length is too short, a2: out of reach
             refusal_left = select((sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5), 0.0, 3.0)
             # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_left_left = select(
@@ -967,7 +967,7 @@ class ArrayPrograms(Programs):
                     *link_length_2
                 )
             )
-            # the effective length is too short to be aimed, out of reach
+            # a2: its effective length is too short, a2: out of reach
             refusal_right = select((sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5), 0.0, 3.0)
             # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_right_left = select(

@@ -117,7 +117,7 @@ class ArrayPrograms(Programs):
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         span_1_x = displacement + x - tcp_displacement  # rod 1
         effective_a1 = root(span_1_x*span_1_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*inner_arm, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
@@ -126,11 +126,11 @@ class ArrayPrograms(Programs):
             (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
             *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
         span_2_x = tcp_displacement + x - displacement  # rod 2
         effective_a2 = root(span_2_x*span_2_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*inner_arm, effective_a2, 1.0)
         swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
@@ -139,7 +139,7 @@ class ArrayPrograms(Programs):
             (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
             *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
         sin_swing_a1 = root(sine_square_a1)*sigma_knee_1
@@ -220,7 +220,7 @@ class ArrayPrograms(Programs):
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         span_1_x = displacement + x - tcp_displacement  # rod 1
         effective_a1 = root(span_1_x*span_1_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*inner_arm, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
@@ -229,11 +229,11 @@ class ArrayPrograms(Programs):
             (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
             *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
         span_2_x = tcp_displacement + x - displacement  # rod 2
         effective_a2 = root(span_2_x*span_2_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*inner_arm, effective_a2, 1.0)
         swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
@@ -242,7 +242,7 @@ class ArrayPrograms(Programs):
             (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
             *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
         sin_swing_a1_outward = root(sine_square_a1)

@@ -92,7 +92,7 @@ class ArrayPrograms(Programs):
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
             /(scale_a2_from_a1*scale_a2_from_a1)
         )
-        # out of reach
+        # a2_from_a1: out of reach
         require(status, sine_square_a2_from_a1 >= -1e-12, Status.UNREACHABLE)
         cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
         sin_a2_from_a1 = root(sine_square_a2_from_a1)*sigma_elbow
@@ -195,7 +195,7 @@ class ArrayPrograms(Programs):
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
             /(scale_a2_from_a1*scale_a2_from_a1)
         )
-        # out of reach
+        # a2_from_a1: out of reach
         require(status, sine_square_a2_from_a1 >= -1e-12, Status.UNREACHABLE)
         cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
         sin_a2_from_a1_right = root(sine_square_a2_from_a1)

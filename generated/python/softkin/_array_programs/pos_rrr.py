@@ -138,7 +138,7 @@ class ArrayPrograms(Programs):
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
         if everywhere(distance_q1 > 1e-11*machine_scale):
             cos_swing_q1 = -d3/divisor_q1
@@ -160,7 +160,7 @@ class ArrayPrograms(Programs):
             (effective_q3_2 + reach - a2)*(a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)
             *(a2 + reach - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
         )
-        # out of reach
+        # q3: out of reach
         require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
         sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
@@ -274,7 +274,7 @@ class ArrayPrograms(Programs):
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
         if everywhere(distance_q1 > 1e-11*machine_scale):
             cos_swing_q1 = -d3/divisor_q1
@@ -483,7 +483,7 @@ class ArrayPrograms(Programs):
             # its reference where it is free
             cos_q2_back_up = select(reach_back > 1e-11*machine_scale, along_q2_back_up/length_q2_back_up, cos(free_a2))
             sin_q2_back_up = select(reach_back > 1e-11*machine_scale, across_q2_back_up/length_q2_back_up, sin(free_a2))
-        refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # out of reach
+        refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # q3: out of reach
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -507,7 +507,7 @@ class ArrayPrograms(Programs):
         )
         # A3: its turn
         axis_a3_front_down = nearest_period(offset_a3 + atan2(sin_q3_front_down, cos_q3_front_down)/DEGREE, near_a3)
-        refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # out of reach
+        refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # q3: out of reach
         axis_a1_back = nearest_period(offset_a1 + atan2(sin_q1_back, cos_q1_back)/DEGREE, near_a1)  # A1: its turn
         # A2: its turn
         axis_a2_back_down = nearest_period(offset_a2 + atan2(sin_q2_back_down, cos_q2_back_down)/DEGREE, near_a2)

@@ -152,7 +152,7 @@ class ArrayPrograms(Programs):
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
             *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
         sin_a2 = root(sine_square_a2)*sigma_elbow
@@ -307,7 +307,7 @@ class ArrayPrograms(Programs):
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
             *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
         sin_a2_right = root(sine_square_a2)

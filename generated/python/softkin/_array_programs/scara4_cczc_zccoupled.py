@@ -161,7 +161,7 @@ class ArrayPrograms(Programs):
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2 = root(sine_square_a2)*sigma_elbow
@@ -320,7 +320,7 @@ class ArrayPrograms(Programs):
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2_right = root(sine_square_a2)

@@ -152,7 +152,7 @@ class ArrayPrograms(Programs):
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
         sin_a3 = root(sine_square_a3)*sigma_elbow
@@ -307,7 +307,7 @@ class ArrayPrograms(Programs):
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
         sin_a3_right = root(sine_square_a3)

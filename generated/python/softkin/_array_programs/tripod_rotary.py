@@ -239,7 +239,7 @@ class ArrayPrograms(Programs):
             )
         )
         effective_a1 = root(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*arm_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*arm_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
@@ -255,7 +255,7 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
         span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
         # rod 2
@@ -266,7 +266,7 @@ class ArrayPrograms(Programs):
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         require(status, effective_a2 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 5e-10*arm_length_1, effective_a2, 1.0)
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
@@ -282,7 +282,7 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         # rod 3
         span_3_y = (
@@ -291,7 +291,7 @@ class ArrayPrograms(Programs):
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = root(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         require(status, effective_a3 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 5e-10*arm_length_1, effective_a3, 1.0)
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
@@ -307,7 +307,7 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
         cos_swing_a1 = (
             (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
@@ -504,7 +504,7 @@ class ArrayPrograms(Programs):
             )
         )
         effective_a1 = root(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*arm_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*arm_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
@@ -520,7 +520,7 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
         span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
         # rod 2
@@ -531,7 +531,7 @@ class ArrayPrograms(Programs):
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         require(status, effective_a2 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 5e-10*arm_length_1, effective_a2, 1.0)
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
@@ -547,7 +547,7 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         # rod 3
         span_3_y = (
@@ -556,7 +556,7 @@ class ArrayPrograms(Programs):
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = root(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         require(status, effective_a3 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 5e-10*arm_length_1, effective_a3, 1.0)
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
@@ -572,7 +572,7 @@ class ArrayPrograms(Programs):
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
         # ball joint of rod 1
         require(status, absolute(y)/arm_length_2 <= sin_max_angle_ball_joint, Status.UNREACHABLE)

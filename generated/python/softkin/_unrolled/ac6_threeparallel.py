@@ -84,7 +84,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(3.0,)
         if distance_q1 > 1e-11*machine_scale:
@@ -1140,7 +1140,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(None,)
         if distance_q1 > 1e-11*machine_scale:
@@ -1812,7 +1812,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q2_right_up_up = sin(free_a2)
             cos_q2_right_down_up = cos_q2_right_up_up  # its reference where it is free
             sin_q2_right_down_up = sin_q2_right_up_up
-        refusal_left_down = 0.0 if sine_square_q3_left_down >= -1e-12 else 3.0  # out of reach
+        refusal_left_down = 0.0 if sine_square_q3_left_down >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left)/DEGREE  # A1: its turn
         axis_a2_left_up_down = offset_a2 + arctan2(sin_q2_left_up_down, cos_q2_left_up_down)/DEGREE  # A2: its turn
         axis_a3_left_up_down = offset_a3 + arctan2(sin_q3_left_up_down, cos_q3_left_down)/DEGREE  # A3: its turn
@@ -1830,7 +1830,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_left_up_down = offset_a4 + arctan2(sin_q4_left_up_down, cos_q4_left_up_down)/DEGREE  # A4: its turn
         axis_a5_left_down = offset_a5 + arctan2(radius_q6_left, -r23_from_q1_left)/DEGREE  # A5: its turn
         axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down)/DEGREE  # A6: its turn
-        refusal_right_down = 0.0 if sine_square_q3_right_down >= -1e-12 else 3.0  # out of reach
+        refusal_right_down = 0.0 if sine_square_q3_right_down >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right)/DEGREE  # A1: its turn
         axis_a2_right_up_down = offset_a2 + arctan2(sin_q2_right_up_down, cos_q2_right_up_down)/DEGREE  # A2: its turn
         axis_a3_right_up_down = offset_a3 + arctan2(sin_q3_right_up_down, cos_q3_right_down)/DEGREE  # A3: its turn
@@ -1884,7 +1884,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # A4: its turn
         axis_a4_right_down_down = offset_a4 + arctan2(sin_q4_right_down_down, cos_q4_right_down_down)/DEGREE
-        refusal_left_up = 0.0 if sine_square_q3_left_up >= -1e-12 else 3.0  # out of reach
+        refusal_left_up = 0.0 if sine_square_q3_left_up >= -1e-12 else 3.0  # q3: out of reach
         axis_a2_left_up_up = offset_a2 + arctan2(sin_q2_left_up_up, cos_q2_left_up_up)/DEGREE  # A2: its turn
         axis_a3_left_up_up = offset_a3 + arctan2(sin_q3_left_up_up, cos_q3_left_up)/DEGREE  # A3: its turn
         cos_q23_left_up_up = cos_q2_left_up_up*cos_q3_left_up - sin_q2_left_up_up*sin_q3_left_up_up
@@ -1899,7 +1899,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_left_up_up = offset_a4 + arctan2(sin_q4_left_up_up, cos_q4_left_up_up)/DEGREE  # A4: its turn
         axis_a5_left_up = offset_a5 + arctan2(-radius_q6_left, -r23_from_q1_left)/DEGREE  # A5: its turn
         axis_a6_left_up = offset_a6 + arctan2(sin_q6_left_up, cos_q6_left_up)/DEGREE  # A6: its turn
-        refusal_right_up = 0.0 if sine_square_q3_right_up >= -1e-12 else 3.0  # out of reach
+        refusal_right_up = 0.0 if sine_square_q3_right_up >= -1e-12 else 3.0  # q3: out of reach
         axis_a2_right_up_up = offset_a2 + arctan2(sin_q2_right_up_up, cos_q2_right_up_up)/DEGREE  # A2: its turn
         axis_a3_right_up_up = offset_a3 + arctan2(sin_q3_right_up_up, cos_q3_right_up)/DEGREE  # A3: its turn
         cos_q23_right_up_up = cos_q2_right_up_up*cos_q3_right_up - sin_q2_right_up_up*sin_q3_right_up_up
@@ -2018,7 +2018,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return None
         if distance_q1 > 1e-11*machine_scale:
@@ -2139,7 +2139,7 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (a3 + reach - a2)*(a2 + a3 + reach)*(a2 + a3 - reach)*(a2 + reach - a3)/(scale_q3*scale_q3)
-        # out of reach
+        # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
         cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3

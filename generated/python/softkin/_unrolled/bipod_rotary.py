@@ -45,7 +45,7 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(3.0,)
         span_1_x = displacement + x - tcp_displacement  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm):
             return 4*(3.0,)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
@@ -55,12 +55,12 @@ def unrolled(k: Constants) -> Unrolled:
             (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
             *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 4*(3.0,)
         span_2_x = tcp_displacement + x - displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm):
             return 4*(3.0,)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
@@ -70,7 +70,7 @@ def unrolled(k: Constants) -> Unrolled:
             (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
             *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 4*(3.0,)
         cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
@@ -170,7 +170,7 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(None,)
         span_1_x = displacement + x - tcp_displacement  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm):
             return 4*(None,)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
@@ -180,12 +180,12 @@ def unrolled(k: Constants) -> Unrolled:
             (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
             *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 4*(None,)
         span_2_x = tcp_displacement + x - displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm):
             return 4*(None,)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
@@ -195,7 +195,7 @@ def unrolled(k: Constants) -> Unrolled:
             (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
             *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 4*(None,)
         cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
@@ -266,7 +266,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         span_1_x = displacement + x - tcp_displacement  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm):
             return None
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
@@ -276,12 +276,12 @@ def unrolled(k: Constants) -> Unrolled:
             (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
             *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return None
         span_2_x = tcp_displacement + x - displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm):
             return None
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
@@ -291,7 +291,7 @@ def unrolled(k: Constants) -> Unrolled:
             (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
             *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
         cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1

@@ -65,7 +65,7 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm_1):
             return 8*(3.0,)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
@@ -82,14 +82,14 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(3.0,)
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm_2):
             return 8*(3.0,)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
@@ -106,14 +106,14 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(3.0,)
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 1e-9*inner_arm_3):
             return 8*(3.0,)
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
@@ -130,7 +130,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 8*(3.0,)
         cos_swing_a1 = (
@@ -495,7 +495,7 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm_1):
             return 8*(None,)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
@@ -512,14 +512,14 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(None,)
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm_2):
             return 8*(None,)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
@@ -536,14 +536,14 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(None,)
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 1e-9*inner_arm_3):
             return 8*(None,)
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
@@ -560,7 +560,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 8*(None,)
         cos_swing_a1 = (
@@ -791,7 +791,7 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*inner_arm_1):
             return None
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
@@ -808,14 +808,14 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return None
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*inner_arm_2):
             return None
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
@@ -832,14 +832,14 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 1e-9*inner_arm_3):
             return None
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
@@ -856,7 +856,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return None
         cos_swing_a1 = (

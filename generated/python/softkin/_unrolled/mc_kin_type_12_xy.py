@@ -49,7 +49,7 @@ def unrolled(k: Constants) -> Unrolled:
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*link_length_1):
             return 4*(3.0,)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
@@ -60,7 +60,7 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 4*(3.0,)
         cos_swing_a1 = (
@@ -520,7 +520,7 @@ def unrolled(k: Constants) -> Unrolled:
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*link_length_1):
             return 4*(None,)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
@@ -531,7 +531,7 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 4*(None,)
         cos_swing_a1 = (
@@ -950,7 +950,7 @@ def unrolled(k: Constants) -> Unrolled:
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*link_length_1):
             return None
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
@@ -961,7 +961,7 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return None
         cos_swing_a1 = (
@@ -989,7 +989,7 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_2
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 1e-9*link_length_5):
             return None
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_5 else 1.0
@@ -1026,7 +1026,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
         pivot_upper_x = -link_length_1*sin_a1  # rod upper

@@ -49,7 +49,7 @@ def unrolled(k: Constants) -> Unrolled:
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
             /(scale_a2_from_a1*scale_a2_from_a1)
         )
-        # out of reach
+        # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return 2*(3.0,)
         cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
@@ -142,7 +142,7 @@ def unrolled(k: Constants) -> Unrolled:
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
             /(scale_a2_from_a1*scale_a2_from_a1)
         )
-        # out of reach
+        # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return 2*(None,)
         cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
@@ -204,7 +204,7 @@ def unrolled(k: Constants) -> Unrolled:
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
             /(scale_a2_from_a1*scale_a2_from_a1)
         )
-        # out of reach
+        # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return None
         cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1

@@ -54,7 +54,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 4*(3.0,)
         if distance_q1 > 1e-11*machine_scale:
@@ -254,7 +254,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 4*(None,)
         if distance_q1 > 1e-11*machine_scale:
@@ -362,11 +362,11 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q2_back_down = sin(free_a2)
             cos_q2_back_up = cos_q2_back_down  # its reference where it is free
             sin_q2_back_up = sin_q2_back_down
-        refusal_front = 0.0 if sine_square_q3_front >= -1e-12 else 3.0  # out of reach
+        refusal_front = 0.0 if sine_square_q3_front >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)/DEGREE  # A1: its turn
         axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down)/DEGREE  # A2: its turn
         axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down)/DEGREE  # A3: its turn
-        refusal_back = 0.0 if sine_square_q3_back >= -1e-12 else 3.0  # out of reach
+        refusal_back = 0.0 if sine_square_q3_back >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)/DEGREE  # A1: its turn
         axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down)/DEGREE  # A2: its turn
         axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down)/DEGREE  # A3: its turn
@@ -390,7 +390,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # out of reach
+        # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return None
         if distance_q1 > 1e-11*machine_scale:
@@ -410,7 +410,7 @@ def unrolled(k: Constants) -> Unrolled:
             (effective_q3_2 + reach - a2)*(a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)
             *(a2 + reach - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
         )
-        # out of reach
+        # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2

@@ -79,7 +79,7 @@ def unrolled(k: Constants) -> Unrolled:
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
             *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
         axis_z = offset_z + z
@@ -187,7 +187,7 @@ def unrolled(k: Constants) -> Unrolled:
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
             *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
@@ -262,7 +262,7 @@ def unrolled(k: Constants) -> Unrolled:
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
             *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2

@@ -79,7 +79,7 @@ def unrolled(k: Constants) -> Unrolled:
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 2*(3.0,)
         axis_a1 = offset_a1 + z
@@ -187,7 +187,7 @@ def unrolled(k: Constants) -> Unrolled:
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 2*(None,)
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
@@ -262,7 +262,7 @@ def unrolled(k: Constants) -> Unrolled:
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return None
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3

@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
@@ -188,7 +188,7 @@ def unrolled(k: Constants) -> Unrolled:
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
@@ -269,7 +269,7 @@ def unrolled(k: Constants) -> Unrolled:
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
             *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2

@@ -61,7 +61,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*arm_length_1):
             return 8*(3.0,)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
@@ -78,7 +78,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(3.0,)
         span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
@@ -90,7 +90,7 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 5e-10*arm_length_1):
             return 8*(3.0,)
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
@@ -107,7 +107,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(3.0,)
         # rod 3
@@ -117,7 +117,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 5e-10*arm_length_1):
             return 8*(3.0,)
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
@@ -134,7 +134,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 8*(3.0,)
         # ball joint of rod 1
@@ -573,7 +573,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*arm_length_1):
             return 8*(None,)
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
@@ -590,7 +590,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(None,)
         span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
@@ -602,7 +602,7 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 5e-10*arm_length_1):
             return 8*(None,)
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
@@ -619,7 +619,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(None,)
         # rod 3
@@ -629,7 +629,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 5e-10*arm_length_1):
             return 8*(None,)
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
@@ -646,7 +646,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 8*(None,)
         # ball joint of rod 1
@@ -951,7 +951,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
         )
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a1: its effective length is too short
         if not (effective_a1 > 1e-9*arm_length_1):
             return None
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
@@ -968,7 +968,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # out of reach
+        # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return None
         span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
@@ -980,7 +980,7 @@ def unrolled(k: Constants) -> Unrolled:
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a2: its effective length is too short
         if not (effective_a2 > 5e-10*arm_length_1):
             return None
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
@@ -997,7 +997,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a2*swing_scale_a2)
         )
-        # out of reach
+        # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
         # rod 3
@@ -1007,7 +1007,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
-        # the effective length is too short to be aimed
+        # a3: its effective length is too short
         if not (effective_a3 > 5e-10*arm_length_1):
             return None
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
@@ -1024,7 +1024,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a3*swing_scale_a3)
         )
-        # out of reach
+        # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return None
         cos_swing_a1 = (

@@ -1,0 +1,185 @@
+"""What to say where a condition of the inverse does not hold: the axis or leg that refused, why, and how much is missing.
+
+A reason ends in the unit of what is missing, as in "A1: above its upper limit [deg]". Without one it is a number (a margin),
+or there is nothing to measure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+from sympy.core.relational import GreaterThan, Relational, StrictGreaterThan
+
+from derive.dimensions import Role
+from derive.kinematics import Kinematics
+from derive.legs import SCALE
+from derive.program import DEGREE, Atan2, Call, Iterate, Let, Require, Root, Status
+
+NOT_INITIALIZED = "not initialized"
+NO_MEANING = "byte {byte} of the configuration means nothing"
+_LENGTH, _ANGLE = "u", "deg"
+_NOTHING = sp.Integer(0)
+
+
+@dataclass(frozen=True)
+class Check:
+    """Conditions that refuse with one reason, and what is missing where one of them does not hold."""
+
+    conditions: tuple[sp.Basic, ...]
+    status: Status
+    reason: str
+    missing: sp.Expr
+    """How much one side is short of the other; zero where that means nothing."""
+
+
+@dataclass(frozen=True)
+class Missing:
+    """How much is missing, in which unit (empty for a number), and what to add to the reason."""
+
+    amount: sp.Expr
+    unit: str = ""
+    side: str = ""
+
+
+@dataclass(frozen=True)
+class Reasons:
+    """What is known of the names in the inverse and in the limits of one mechanism."""
+
+    axes: Mapping[str, str]
+    """The name of the axis, by the name of its joint value."""
+    limits: Mapping[str, str]
+    """The units of the limits, by the names of the constants."""
+    lengths: frozenset[str]
+    """The parameters that are lengths, and the scale of the machine."""
+    parameters: frozenset[str]
+    definitions: Mapping[sp.Symbol, sp.Expr]
+
+    def checks(self, requires: Iterable[Require]) -> list[Check]:
+        """What requirements ask, in a fixed order: one check for every reason that has an amount, one for others alike."""
+        found: list[Check] = []
+        for require in requires:
+            for part in sp.ordered(sp.And.make_args(require.condition)):
+                is_input = require.otherwise is Status.BAD_INPUT
+                missing = Missing(_NOTHING) if is_input else self._missing(part)
+                reason = self._reason(f"not given: {require.note}" if is_input else require.note, missing)
+                check = Check((part,), require.otherwise, reason, missing.amount)
+                if missing.amount == 0 and found and found[-1].reason == check.reason:
+                    check = Check((*found.pop().conditions, part), check.status, check.reason, check.missing)
+                found.append(check)
+        return found
+
+    def loop(self, loop: Iterate) -> str:
+        """Why a loop that was never left refuses."""
+        return self._reason(loop.note, Missing(_NOTHING))
+
+    def _reason(self, note: str, missing: Missing) -> str:
+        subject, colon, rest = note.removeprefix("limits of ").partition(":")
+        subject = self.axes.get(subject, subject)
+        text = f"{subject}{colon}{rest}{missing.side}" + (f" [{missing.unit}]" if missing.unit else "")
+        return text.replace("²", "^2").replace("'", "")
+
+    def _missing(self, part: sp.Basic) -> Missing:
+        part = _told(part)
+        if not isinstance(part, Relational) or _is_flag(part):
+            return Missing(_NOTHING)
+        more = isinstance(part, GreaterThan | StrictGreaterThan)
+        short = part.rhs - part.lhs if more else part.lhs - part.rhs
+        if part.rhs.is_Symbol and part.rhs.name in self.limits:
+            side = ": below its lower limit" if more else ": above its upper limit"
+            return Missing(short, self.limits[part.rhs.name], side)
+        length = self._short_length(self.definitions.get(part.lhs, _NOTHING))
+        if length is not None:
+            return Missing(length, _LENGTH)
+        bound = self.definitions.get(part.rhs, _NOTHING)
+        if bound.has(sp.cos):
+            return Missing((_of_cosine(part.lhs) - _of_cosine(part.rhs)) / DEGREE, _ANGLE)
+        if bound.has(sp.sin):
+            return Missing((_of_sine(part.lhs) - _of_sine(part.rhs)) / DEGREE, _ANGLE, ": beyond its largest angle")
+        if _is_tolerance(part):
+            names = {s.name for s in part.rhs.free_symbols}
+            return Missing(_NOTHING) if more else Missing(short, _LENGTH if names and names <= self.lengths else "")
+        return Missing(short)
+
+    def _short_length(self, radicand: sp.Expr) -> sp.Expr | None:
+        """Of a radicand that is negative, how much the lengths in it are short; None where they do not stand in it as lengths.
+
+        In a product of lengths, (l1 + l2 - r)(l1 + l2 + r)(l1 - l2 + r)(l2 + r - l1) or (r - l)(r + l), it is the factor of
+        least size, whatever signs the lengths have. Where a length occurs as its square alone, as the rod l in
+        l^2 - x^2 - y^2, it would have to be so much longer or shorter.
+        """
+        sums = [f for f in sp.Mul.make_args(radicand) if f.is_Add]
+        if not sums:
+            return None
+        if all(t.as_coeff_Mul()[1].is_Symbol for f in sums for t in f.args):
+            whole = sp.Add(*sums) / 2
+            return sp.Add(*[sp.Abs(f) / 2 for f in sums]) - whole.xreplace({s: sp.Abs(s) for s in self._signed(whole)})
+        for rod in sorted({s for f in sums for s in f.free_symbols if s.name in self.lengths}, key=str):
+            signs = [f.coeff(rod, 2) for f in sums]
+            if all(s in (1, -1) and not (f - s * rod**2).has(rod) for s, f in zip(signs, sums, strict=True)):
+                below = [-f if len(sums) == 1 else _below_zero(f) for f in sums]
+                needed = sp.Add(rod**2, *[s * b for s, b in zip(signs, below, strict=True)])
+                return sp.Abs(Root(needed) - rod)
+        return None
+
+
+    def _signed(self, value: sp.Expr) -> set[sp.Symbol]:
+        """The parameters in it that may be negative."""
+        return {s for s in value.free_symbols if s.name in self.parameters and s.name not in self.lengths}
+
+
+def reasons_of(kinematics: Kinematics) -> Reasons:
+    """What the reasons of a mechanism need to know."""
+    programs = (kinematics.setup, kinematics.branch, kinematics.limits)
+    if any(isinstance(s, Call) for p in programs for s in p.body):
+        raise TypeError(f"{kinematics.mechanism.name}: the inverse calls a program that gives no reasons")
+    limits = {p.name.replace("lower_", "lowest_", 1): p.unit for p in kinematics.parameters if p.name.startswith("lower_")}
+    limits |= {p.name.replace("upper_", "highest_", 1): p.unit for p in kinematics.parameters if p.name.startswith("upper_")}
+    return Reasons(
+        {j.symbol.name: j.name for j in kinematics.mechanism.joints},
+        limits,
+        frozenset({SCALE.name} | {p.name for p in kinematics.parameters if p.role is Role.LENGTH}),
+        frozenset(p.name for p in kinematics.parameters),
+        {s.name: s.value for p in programs for s in p.body if isinstance(s, Let)},
+    )
+
+
+def texts(kinematics: Kinematics) -> tuple[str, ...]:
+    """Every reason of the inverse and of the limits, once, in order: the place, from 1, is the number of the reason."""
+    reasons = reasons_of(kinematics)
+    found: list[str] = []
+    for statement in (*kinematics.branch.body, *kinematics.limits.body):
+        if isinstance(statement, Require):
+            found += [c.reason for c in reasons.checks([statement])]
+        elif isinstance(statement, Iterate):
+            found.append(reasons.loop(statement))
+    return tuple(dict.fromkeys(found))
+
+
+def _told(part: sp.Basic) -> sp.Basic:
+    """Of alternatives that all fail, the one that is no flag."""
+    return next((p for p in sp.ordered(part.args) if not _is_flag(p)), part) if isinstance(part, sp.Or) else part
+
+
+def _is_flag(part: sp.Basic) -> bool:
+    """Whether it asks which of two cases it is: 0 or 1, or a sign."""
+    return isinstance(part, Relational) and part.lhs.is_Symbol and part.rhs in (0, sp.Rational(1, 2))
+
+
+def _is_tolerance(part: Relational) -> bool:
+    """Whether a length is compared with a small part of another, or a number with a small one."""
+    return bool(abs(part.rhs.as_coeff_Mul()[0]) < sp.Float("1e-5")) and not part.rhs.is_zero
+
+
+def _below_zero(value: sp.Expr) -> sp.Expr:
+    """How far a value is below zero; zero where it is not."""
+    return (sp.Abs(value) - value) / 2
+
+
+def _of_cosine(value: sp.Expr) -> sp.Expr:
+    return Atan2(Root(1 - value**2), value)
+
+
+def _of_sine(value: sp.Expr) -> sp.Expr:
+    return Atan2(value, Root(1 - value**2))

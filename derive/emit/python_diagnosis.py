@@ -1,0 +1,71 @@
+"""The inverse and its limits as functions that say which axis or leg refused, why, and how much is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.diagnosis import Reasons, reasons_of
+from derive.emit.python_layout import fold
+from derive.emit.python_methods import branch, limits
+from derive.emit.python_printer import ScalarPrinter, primitives_in
+from derive.emit.python_program import Method, Refusals, conjunction, scalar_body
+from derive.kinematics import Kinematics
+from derive.program import Iterate, Require, Status
+
+_PRINTER = ScalarPrinter()
+
+
+def diagnosis(kin: Kinematics) -> dict[str, object]:
+    """What the template reads: the primitives, and the functions with their heads and bodies."""
+    refusals = _Reasons(lambda status: f"Status.{status.name}", reasons_of(kin))
+    methods = (branch(kin), limits(kin))
+    bodies = [_body(m, refusals) for m in methods]
+    return {
+        "primitives": primitives_in(line for body in bodies for line in body if '"' not in line),
+        "functions": [{"head": _head(m), "summary": m.summary, "body": b} for m, b in zip(methods, bodies, strict=True)],
+    }
+
+
+def _head(method: Method) -> list[str]:
+    arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
+    result = f"{method.kind} | Diagnosis" if method.kind else "Diagnosis"
+    return fold(f"def {method.name}(constants: Constants{arguments}) -> {result}:", 0)
+
+
+def _body(method: Method, refusals: _Reasons) -> list[str]:
+    """Without the notes: they stand in the module of the mechanism."""
+    body = scalar_body(method, "constants", refusals)
+    lines = [line.partition("  # ")[0] for line in body if not line.lstrip().startswith("#")]
+    return lines if method.kind else [*lines[:-1], 'return Diagnosis(Status.OK, "", 0.0)']
+
+
+@dataclass(frozen=True)
+class _Reasons(Refusals):
+    """Refusals that say why."""
+
+    reasons: Reasons
+
+    def lines(self, requires: Sequence[Require]) -> list[str]:
+        """Every reason for itself."""
+        return list(self._lines(requires))
+
+    def of_loop(self, loop: Iterate) -> str:
+        """A loop that was never left has a reason and no amount."""
+        return self._refused(loop.otherwise, self.reasons.loop(loop))
+
+    def reads(self, require: Require) -> tuple[sp.Expr, ...]:
+        """The amounts."""
+        return tuple(check.missing for check in self.reasons.checks([require]))
+
+    def _lines(self, requires: Sequence[Require]) -> Iterator[str]:
+        for check in self.reasons.checks(requires):
+            yield from fold(f"if not ({conjunction(check.conditions)}):")
+            missing = fold(f"missing = {_PRINTER.print(check.missing)}") if check.missing != 0 else []
+            refused = self._refused(check.status, check.reason, "missing" if missing else "0.0")
+            yield from (f"    {line}" for line in (*missing, *fold(refused)))
+
+    def _refused(self, status: Status, reason: str, missing: str = "0.0") -> str:
+        return f'return Diagnosis({self.answer(status)}, "{reason}", {missing})'
