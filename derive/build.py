@@ -12,7 +12,7 @@ from derive.branching import Assignment, assign, margin_lets, with_branch_signs
 from derive.carried import BASE_AXIS, FLANGE_AXIS, coupling_programs
 from derive.closure import flange_rotation, heading_of
 from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program, twist_program
-from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
+from derive.edges import finite, is_rotation, joint_lets
 from derive.forward import (
     Forward,
     at_point,
@@ -24,7 +24,7 @@ from derive.forward import (
 from derive.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics import Freedom, Kinematics, Margin
 from derive.legs import MARGIN
-from derive.mechanism import DescriptionError, Mechanism, Turning
+from derive.mechanism import ROTATION_ENTRIES, DescriptionError, Mechanism, Turning
 from derive.newton import START_POSITION, START_ROTATION, at_given, at_home, found_from, search_program
 from derive.parameters import machine_parameters, setup_program
 from derive.passes import assemble, hoist

@@ -39,17 +39,25 @@ class Margin:
 
 
 @dataclass(frozen=True)
-class Evidence:
-    """What the independent witness measured, rounded up so that it reads the same on every machine."""
+class Inverted:
+    """What was measured of the inverse and of the Jacobian."""
 
-    poses: int
-    closure_residual: float
     round_trip: float
     jacobian: float
     solutions: int
     """Real solutions found by multi-start root finding, agreeing with the slots at every sampled pose."""
     missed: tuple[int, int] | None = None
     """Of a search: how many solutions no slot held, of how many in all."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What the independent witness measured, rounded up so that it reads the same on every machine."""
+
+    poses: int
+    closure_residual: float
+    inverted: Inverted | None
+    """None for a mechanism without joints: there is nothing to invert."""
 
 
 @dataclass(frozen=True)

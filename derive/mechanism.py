@@ -39,12 +39,14 @@ TURN = 2 * sp.pi
 X, Y, Z = (Quantity(real(name)) for name in COORDINATE_NAMES)
 """The commanded position, for closures that are not a chain."""
 ROTATION = sp.ImmutableMatrix(3, 3, [real(f"r{i}{j}") for i in "123" for j in "123"])
+ROTATION_ENTRIES: tuple[sp.Symbol, ...] = tuple(ROTATION)
 """The commanded rotation, for closures that follow the whole of it."""
 
 
 __all__ = [
     "COORDINATE_NAMES",
     "ROTATION",
+    "ROTATION_ENTRIES",
     "TURN",
     "Assembly",
     "Bound",
