@@ -32,7 +32,7 @@ from derive.dimensions import (
 )
 from derive.frames import Chain
 from derive.joints import COORDINATE_NAMES, Interval, Joint, Kind, arc, helical, linear, rotary
-from derive.program import real
+from derive.program import Let, real
 from derive.quantity import Quantity
 
 TURN = 2 * sp.pi
@@ -198,6 +198,8 @@ class Constraint:
 
     condition: sp.Basic
     message: str
+    steps: tuple[Let, ...] = ()
+    """Values under names that this condition and those after it read."""
 
 
 class Turning(Enum):

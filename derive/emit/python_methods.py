@@ -17,7 +17,7 @@ IMAGE: tuple[Shape, ...] = (
     ("u_x", "u_y", "u_z"),
 )
 _ROTATION = Argument("rotation", "Rotation", ROTATION)
-_RANK = Argument("rank", "Reals", ("rank",))
+_RANK = Argument("number", "Reals", ("rank",))
 _AXES = tuple(Argument(name, "Vector", tuple(f"{name}_{c}" for c in "xyz")) for name in ("flange_axis", "base_axis"))
 
 

@@ -63,6 +63,6 @@ class SearchedInverse(Mechanism):
 
     @abstractmethod
     def _ranked(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals, rank: Reals
+        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals, number: Reals
     ) -> Reals | Status:
         """The solution that has so many others nearer to the reference."""

@@ -672,7 +672,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
 
     def _ranked(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals, rank: Reals,
+        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        number: Reals,
     ) -> Reals | Status:
         """The axes of one branch: of its solutions the one that has so many others nearer to the reference."""
         x, y, z = position
@@ -680,7 +681,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
-        (rank,) = rank
+        (rank,) = number
         k = self._constants
         a1 = k.a1
         a2 = k.a2
