@@ -101,8 +101,8 @@ def branch(
     free_a2 = (ref_a2 - offset_a2)*DEGREE
     free_a5 = (ref_a5 - offset_a5)*DEGREE
     free_a6 = (ref_a6 - offset_a6)*DEGREE
-    tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, usable_ahead, usable_behind, touching = (
-        free_a6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+    tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, touching = (
+        free_a6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
     )
     for _ in range(1800):
         cos_q6_tried = cos(tried)
@@ -170,13 +170,12 @@ def branch(
             else 0.0
         )
         first = 0.0 if radius > 0.0 else 1.0
-        usable_before = usable_ahead if side > 0.0 else usable_behind
         previous = ahead if side > 0.0 else behind
         outward = previous*side*sigma_crossing
         arrived = residual_tried*side*sigma_crossing
         crosses = (
             1.0
-            if (scanning > 0.5) and (usable_before > 0.5) and (first < 0.5) and (touching < 0.5) and (
+            if (scanning > 0.5) and (first < 0.5) and (touching < 0.5) and (
                 ((arrived >= 0.0) and (outward < 0.0) and (side < 0.0))
                 or ((outward <= 0.0) and (arrived > 0.0) and (side > 0.0))
             )
@@ -233,16 +232,6 @@ def branch(
             if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0))
             else behind
         )
-        next_usable_ahead = (
-            1.0
-            if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side > 0.0))
-            else usable_ahead
-        )
-        next_usable_behind = (
-            1.0
-            if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0))
-            else usable_behind
-        )
         if (accepted > 0.5) or (searched < 0.5) or (radius > 180.75*DEGREE):
             break
         tried = next_tried
@@ -257,8 +246,6 @@ def branch(
         high_value = next_high_value
         ahead = next_ahead
         behind = next_behind
-        usable_ahead = next_usable_ahead
-        usable_behind = next_usable_behind
         touching = next_touching
     else:
         return Diagnosis(Status.UNREACHABLE, "search along the joint, from its reference outwards", 0.0)
