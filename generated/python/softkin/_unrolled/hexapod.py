@@ -111,6 +111,7 @@ def unrolled(k: Constants) -> Unrolled:
     platform_6_y = k.platform_6_y
     platform_6_z = k.platform_6_z
     platform_radius = k.platform_radius
+    machine_scale_times_shortest_link = 1e-9*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -171,42 +172,43 @@ def unrolled(k: Constants) -> Unrolled:
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # a leg without length has no direction
         if not (
-            l1 > 1e-9*machine_scale and l2 > 1e-9*machine_scale and l3 > 1e-9*machine_scale
-            and l4 > 1e-9*machine_scale and l5 > 1e-9*machine_scale and l6 > 1e-9*machine_scale
+            l1 > machine_scale_times_shortest_link and l2 > machine_scale_times_shortest_link
+            and l3 > machine_scale_times_shortest_link and l4 > machine_scale_times_shortest_link
+            and l5 > machine_scale_times_shortest_link and l6 > machine_scale_times_shortest_link
         ):
             return 1*(3.0,)
         # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = l1 if l1 > 1e-9*machine_scale else 1.0
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
         # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = l2 if l2 > 1e-9*machine_scale else 1.0
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
         along_2_z = span_2_z/divisor_2
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
         # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = l3 if l3 > 1e-9*machine_scale else 1.0
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
         along_3_z = span_3_z/divisor_3
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
         # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = l4 if l4 > 1e-9*machine_scale else 1.0
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
         along_4_z = span_4_z/divisor_4
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
         # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = l5 if l5 > 1e-9*machine_scale else 1.0
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
         along_5_z = span_5_z/divisor_5
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
         # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = l6 if l6 > 1e-9*machine_scale else 1.0
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
         along_6_z = span_6_z/divisor_6
@@ -369,42 +371,43 @@ def unrolled(k: Constants) -> Unrolled:
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # a leg without length has no direction
         if not (
-            l1 > 1e-9*machine_scale and l2 > 1e-9*machine_scale and l3 > 1e-9*machine_scale
-            and l4 > 1e-9*machine_scale and l5 > 1e-9*machine_scale and l6 > 1e-9*machine_scale
+            l1 > machine_scale_times_shortest_link and l2 > machine_scale_times_shortest_link
+            and l3 > machine_scale_times_shortest_link and l4 > machine_scale_times_shortest_link
+            and l5 > machine_scale_times_shortest_link and l6 > machine_scale_times_shortest_link
         ):
             return 1*(None,)
         # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = l1 if l1 > 1e-9*machine_scale else 1.0
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
         # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = l2 if l2 > 1e-9*machine_scale else 1.0
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
         along_2_z = span_2_z/divisor_2
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
         # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = l3 if l3 > 1e-9*machine_scale else 1.0
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
         along_3_z = span_3_z/divisor_3
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
         # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = l4 if l4 > 1e-9*machine_scale else 1.0
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
         along_4_z = span_4_z/divisor_4
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
         # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = l5 if l5 > 1e-9*machine_scale else 1.0
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
         along_5_z = span_5_z/divisor_5
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
         # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = l6 if l6 > 1e-9*machine_scale else 1.0
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
         along_6_z = span_6_z/divisor_6
@@ -549,42 +552,43 @@ def unrolled(k: Constants) -> Unrolled:
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # a leg without length has no direction
         if not (
-            l1 > 1e-9*machine_scale and l2 > 1e-9*machine_scale and l3 > 1e-9*machine_scale
-            and l4 > 1e-9*machine_scale and l5 > 1e-9*machine_scale and l6 > 1e-9*machine_scale
+            l1 > machine_scale_times_shortest_link and l2 > machine_scale_times_shortest_link
+            and l3 > machine_scale_times_shortest_link and l4 > machine_scale_times_shortest_link
+            and l5 > machine_scale_times_shortest_link and l6 > machine_scale_times_shortest_link
         ):
             return None
         # leg 1: its direction, and the moment of that about the platform's origin
-        divisor_1 = l1 if l1 > 1e-9*machine_scale else 1.0
+        divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
         along_1_x = span_1_x/divisor_1
         along_1_y = span_1_y/divisor_1
         along_1_z = span_1_z/divisor_1
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
         # leg 2: its direction, and the moment of that about the platform's origin
-        divisor_2 = l2 if l2 > 1e-9*machine_scale else 1.0
+        divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
         along_2_x = span_2_x/divisor_2
         along_2_y = span_2_y/divisor_2
         along_2_z = span_2_z/divisor_2
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
         # leg 3: its direction, and the moment of that about the platform's origin
-        divisor_3 = l3 if l3 > 1e-9*machine_scale else 1.0
+        divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
         along_3_x = span_3_x/divisor_3
         along_3_y = span_3_y/divisor_3
         along_3_z = span_3_z/divisor_3
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
         # leg 4: its direction, and the moment of that about the platform's origin
-        divisor_4 = l4 if l4 > 1e-9*machine_scale else 1.0
+        divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
         along_4_x = span_4_x/divisor_4
         along_4_y = span_4_y/divisor_4
         along_4_z = span_4_z/divisor_4
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
         # leg 5: its direction, and the moment of that about the platform's origin
-        divisor_5 = l5 if l5 > 1e-9*machine_scale else 1.0
+        divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
         along_5_x = span_5_x/divisor_5
         along_5_y = span_5_y/divisor_5
         along_5_z = span_5_z/divisor_5
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
         # leg 6: its direction, and the moment of that about the platform's origin
-        divisor_6 = l6 if l6 > 1e-9*machine_scale else 1.0
+        divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
         along_6_x = span_6_x/divisor_6
         along_6_y = span_6_y/divisor_6
         along_6_z = span_6_z/divisor_6
