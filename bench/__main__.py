@@ -37,9 +37,8 @@ class Quality:
 
 def main() -> None:
     """Measure and print."""
-    print(f"Python {sys.version.split()[0]}, NumPy {np.__version__}")
-    print(f"the least of {ROUNDS} rounds (batches: {BATCH_ROUNDS}), in turns")
-    print(f"{SCALAR} random poses a call each, {ROWS} rows a batch; lost: of {SCALAR} random, and of 4096 of the 90-degree grid.")
+    print(f"Python {sys.version.split()[0]}, NumPy {np.__version__}; least of {ROUNDS} rounds ({BATCH_ROUNDS} of batches).")
+    print(f"Poses: {SCALAR} random, a call each; {ROWS} random, one call; 4096 of the 90-degree grid for quality alone.")
     for table in (KR6_R900, UR5):
         report(table)
 

@@ -134,10 +134,13 @@ def _opw(table: Table) -> list[Contender]:
         solved = np.flatnonzero(~np.isnan(rows).any(axis=1))
         return axes(np.asarray(rows)[solved]), solved
 
-    one, many = "py-opw-kinematics inverse(pose)", "py-opw-kinematics batch_inverse, one solution"
+    def transforms(poses: Array) -> list[Any]:
+        return [RigidTransform.from_matrix(pose) for pose in poses]
+
+    together, one = RigidTransform.from_matrix, "py-opw-kinematics batch_inverse, one solution"
     return [
-        Contender(one, ALL, lambda p: [RigidTransform.from_matrix(m) for m in p], robot.inverse, every),
-        Contender(many, BATCH, RigidTransform.from_matrix, robot.batch_inverse, nearest),
+        Contender("py-opw-kinematics inverse(pose)", ALL, transforms, robot.inverse, every),
+        Contender(one, BATCH, together, robot.batch_inverse, nearest),
     ]
 
 

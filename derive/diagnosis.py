@@ -15,7 +15,7 @@ from sympy.core.relational import GreaterThan, Relational, StrictGreaterThan
 from derive.dimensions import Role
 from derive.kinematics import Kinematics
 from derive.legs import SCALE
-from derive.program import DEGREE, Atan2, Call, Iterate, Let, Require, Root, Status
+from derive.program import DEGREE, Atan2, Call, Iterate, Let, Require, Root, Select, Status
 
 NOT_INITIALIZED = "not initialized"
 NO_MEANING = "byte {byte} of the configuration means nothing"
@@ -53,7 +53,6 @@ class Reasons:
     """The units of the limits, by the names of the constants."""
     lengths: frozenset[str]
     """The parameters that are lengths, and the scale of the machine."""
-    parameters: frozenset[str]
     definitions: Mapping[sp.Symbol, sp.Expr]
 
     def checks(self, requires: Iterable[Require]) -> list[Check]:
@@ -112,6 +111,8 @@ class Reasons:
         sums = [f for f in sp.Mul.make_args(radicand) if f.is_Add]
         if not sums:
             return None
+        if radicand.could_extract_minus_sign() and radicand.is_Mul:
+            sums[0] = -sums[0]
         if all(t.as_coeff_Mul()[1].is_Symbol for f in sums for t in f.args):
             whole = sp.Add(*sums) / 2
             return sp.Add(*[sp.Abs(f) / 2 for f in sums]) - whole.xreplace({s: sp.Abs(s) for s in self._signed(whole)})
@@ -125,8 +126,9 @@ class Reasons:
 
 
     def _signed(self, value: sp.Expr) -> set[sp.Symbol]:
-        """The parameters in it that may be negative."""
-        return {s for s in value.free_symbols if s.name in self.parameters and s.name not in self.lengths}
+        """The names in it of what may be negative."""
+        known = {s for s in value.free_symbols if isinstance(self.definitions.get(s), Root | Select)}
+        return {s for s in value.free_symbols - known if s.name not in self.lengths}
 
 
 def reasons_of(kinematics: Kinematics) -> Reasons:
@@ -140,7 +142,6 @@ def reasons_of(kinematics: Kinematics) -> Reasons:
         {j.symbol.name: j.name for j in kinematics.mechanism.joints},
         limits,
         frozenset({SCALE.name} | {p.name for p in kinematics.parameters if p.role is Role.LENGTH}),
-        frozenset(p.name for p in kinematics.parameters),
         {s.name: s.value for p in programs for s in p.body if isinstance(s, Let)},
     )
 

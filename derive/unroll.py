@@ -28,6 +28,7 @@ from derive.program import (
     Output,
     Program,
     Require,
+    Root,
     Select,
     Statement,
     Status,
@@ -176,7 +177,7 @@ class _Unroller:
 
     def _bound(self, let: Let, support: tuple[int, ...], choice: Choice) -> sp.Expr:
         """The name of a value, bound unless the value or its negative has a name already."""
-        value = let.value
+        value = self._without_repetition(let, support, choice)
         if value.is_Symbol or value.is_Number or (-value).is_Symbol:
             return value
         if value in self._known:
@@ -187,6 +188,18 @@ class _Unroller:
         self._known[value] = name
         self.body.append(Let(name, value, let.note))
         return name
+
+    def _without_repetition(self, let: Let, support: tuple[int, ...], choice: Choice) -> sp.Expr:
+        """The value with a name for what stands in it twice, below a root and elsewhere."""
+        value = let.value
+        if not value.has(Root):
+            return value
+        nodes = list(sp.preorder_traversal(value))
+        for radicand in dict.fromkeys(node.args[0] for node in nodes if isinstance(node, Root)):
+            if radicand.args and nodes.count(radicand) > 1:
+                square = Let(real(f"{let.name.name}_squared"), radicand)
+                value = value.xreplace({radicand: self._bound(square, support, choice)})
+        return value
 
     def _union(self, symbols: Iterable[sp.Symbol]) -> tuple[int, ...]:
         return tuple(sorted({index for s in symbols for index in self._support.get(s, ())}))

@@ -9,7 +9,7 @@ from keyword import iskeyword
 import sympy as sp
 
 from derive.emit.expression import ATOM, FUNCTION_KEYS, ExpressionPrinter
-from derive.program import Root
+from derive.program import Root, Select
 
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
@@ -66,6 +66,9 @@ class ScalarPrinter(ExpressionPrinter):
         self.modulo_turns, self.is_trusted = modulo_turns, is_trusted
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, Select) and isinstance(node.args[1], Root) and node.args[0] == sp.Gt(node.args[1].args[0], 0):
+            condition, (radicand,), otherwise = node.args[0], node.args[1].args, node.args[2]
+            return f"(sqrt({self.print(radicand)}) if {self.print(condition)} else {self.print(otherwise)})", ATOM
         if isinstance(node, Root):
             (radicand,) = node.args
             text = self.print(radicand)

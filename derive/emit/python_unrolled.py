@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.constant_parts import constant_parts
 from derive.emit.python_layout import fold
 from derive.emit.python_methods import POSITION, ROTATION, branch
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, primitives_in, spelled
-from derive.emit.python_program import Argument, Method, Refusals, array_statements, constants_of, statement_lines, unpacked
+from derive.emit.python_program import (
+    Argument,
+    Method,
+    Refusals,
+    array_statements,
+    constants_of,
+    let_lines,
+    statement_lines,
+    unpacked,
+)
 from derive.kinematics import Kinematics
-from derive.program import Program, Status, real
+from derive.program import Let, Program, Status, real, symbols_of
+from derive.twins import with_twins
 from derive.unroll import REFUSAL, Sign, choices, is_straight, principal, specialised, suffixed, unroll, with_limits
 
 _ARRAY = ArrayPrinter()
@@ -35,6 +46,8 @@ class Unrolled:
 
     functions: tuple[Function, ...]
     constants: list[str]
+    parts: list[str]
+    """The statements that compute what depends on constants alone."""
     primitives: list[str]
 
 
@@ -50,12 +63,12 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
 
 def every_branch(kin: Kinematics) -> Program:
     """All branches, periods nearest to the reference, limits tested."""
-    return unroll(_nearest(kin, with_limits(kin.branch, kin.limits)), signs(kin))
+    return with_twins(unroll(_nearest(kin, with_limits(kin.branch, kin.limits)), signs(kin)))
 
 
 def branches(kin: Kinematics) -> Program:
     """All branches in principal values."""
-    return unroll(principal(_nearest(kin, kin.branch)), signs(kin))
+    return principal(with_twins(unroll(_nearest(kin, kin.branch), signs(kin))))
 
 
 def array_method(kin: Kinematics) -> Method:
@@ -83,11 +96,20 @@ def _nearest(kin: Kinematics, program: Program) -> Program:
 
 def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers."""
-    methods = _methods(kin)
+    methods, parts = _with_constant_parts(kin, _methods(kin))
     bodies = [_slots(kin, methods[0]), _directions(kin, methods[1]), _direction(methods[2])]
     functions = tuple(_function(m, body) for m, body in zip(methods, bodies, strict=True))
-    constants = sorted({c for m in methods for c in constants_of(m)})
-    return Unrolled(functions, [spelled(c) for c in constants], primitives_in(line for f in functions for line in f.body))
+    read = {c for m in methods for c in constants_of(m)} | {s.name for p in parts for s in symbols_of(p.value)}
+    constants = sorted(read - {p.name.name for p in parts})
+    lines = [line for part in parts for line in let_lines(part, _SCALAR)]
+    primitives = primitives_in([*lines, *(line for f in functions for line in f.body)])
+    return Unrolled(functions, [spelled(c) for c in constants], lines, primitives)
+
+
+def _with_constant_parts(kin: Kinematics, methods: Sequence[Method]) -> tuple[list[Method], tuple[Let, ...]]:
+    """The methods, and what they read that is computed from constants."""
+    programs, parts = constant_parts((m.program for m in methods), (o.name for o in kin.setup.outputs))
+    return [replace(m, program=p) for m, p in zip(methods, programs, strict=True)], parts
 
 
 def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import pytest
+import softkin
 from numpy.testing import assert_allclose
 from softkin import Status
 
@@ -81,6 +84,7 @@ def test_nothing_works_before_initialize() -> None:
     empty, axes = Controller(compiled(MECHANISM), MECHANISM), (650.0,) * 6
     assert empty.forward(axes) == empty.jacobian(axes) == (NOT_INITIALIZED, None)
     assert empty.inverse((0.0, 0.0, 600.0), np.eye(3), (), axes) == (NOT_INITIALIZED, None)
+    assert empty.diagnose((0.0, 0.0, 600.0), np.eye(3), (), axes) == ("not initialized", 0.0)
     assert empty.is_singular(axes)
     assert empty.image("GetFlangeOrientationImageTotal") == empty.image_with_orientation(np.eye(3)) == (NOT_INITIALIZED, None)
     assert not empty.block.call("IsInitialized") and controller("nominal").block.call("IsInitialized")
@@ -176,15 +180,48 @@ def machine_names() -> list[str]:
 
 
 def check_bounds() -> None:
-    """Limits, cones, the singularity, and a leg without length refuse in the inverse."""
+    """Limits, cones, the singularity, and a leg without length refuse in the inverse, and Diagnose names the leg."""
     machine = machines()["nominal"]
     pose, reference = (machine.home[:3] + 20.0, machine.home_turn), (0.0,) * 6
-    limits = [{f"lower_l{k}": 1.0, f"upper_l{k}": 2.0} for k in range(1, 7)]
-    cones = [{f"max_angle_{side}_joint": 0.01} for side in ("base", "platform")]
-    for more in (*limits, *cones, {"min_type2_margin": 1.0}):
-        assert made(machine, compiled(MECHANISM), **more).inverse(*pose, (), reference) == (UNREACHABLE, None)
+    limits = [{f"lower_l{k}": low, f"upper_l{k}": low + 1.0} for k in range(1, 7) for low in (1.0, 1e4)]
+    for more in (*limits, {"min_type2_margin": 1.0}):
+        block = made(machine, compiled(MECHANISM), **more)
+        assert block.inverse(*pose, (), reference) == (UNREACHABLE, None)
+        reason, missing = block.diagnose(*pose, (), reference)
+        said = "rods_dependent" if "min_type2_margin" in more else next(iter(more)).removeprefix("lower_").upper()
+        assert reason.startswith(f"{said}: ") and missing > 0.0
+    check_cones(machine)
     unchecked = made(machine, compiled(MECHANISM), **limits[0], check_limits=False)
     assert unchecked.inverse(*pose, (), reference) == (OK, machine.robot.inverse(pose))
-    on_base = machine.base[0] - machine.platform[0]
-    assert controller("nominal").inverse(on_base, np.eye(3), (), reference) == (UNREACHABLE, None)
+    for k, on_base in enumerate(machine.base - machine.platform, 1):
+        assert controller("nominal").inverse(on_base, np.eye(3), (), reference) == (UNREACHABLE, None)
+        without = controller("nominal").diagnose(on_base, np.eye(3), (), reference)
+        assert without == (f"leg {k}: without length it has no direction", 0.0)
     assert controller("nominal").inverse((0.0, 0.0, np.nan), np.eye(3), (), reference) == (BAD_INPUT, None)
+
+
+def check_cones(machine: Machine) -> None:
+    """Every leg leans more than those before it at some place, and a cone between them refuses it alone.
+
+    A platform that keeps its rotation sees the same leans as the base.
+    """
+    rng = np.random.default_rng(5)
+    along = _directions(machine, machine.home[:3])
+    for leg, side in product(range(6), ("base", "plate")):
+        before = lean = 0.0
+        while lean <= before + 0.1:
+            place = machine.home[:3] + rng.uniform(-60.0, 60.0, 3)
+            leans = np.degrees(np.arccos(np.minimum(np.sum(along * _directions(machine, place), axis=1), 1.0)))
+            lean, before = float(leans[leg]), float(leans[:leg].max(initial=0.0))
+        cone = {f"max_angle_{side.replace('plate', 'platform')}_joint": 0.5 * (lean + before)}
+        block, robot = made(machine, compiled(MECHANISM), **cone), softkin.Hexapod(**{**machine.given, **cone})
+        reason, missing = block.diagnose(place, machine.home_turn, (), (0.0,) * 6)
+        assert (reason, pytest.approx(missing, rel=1e-12)) == robot.diagnose((place, machine.home_turn))[1:]
+        assert reason == f"leg {leg + 1}: its joint on the {side} bends beyond its cone [deg]"
+        assert missing == pytest.approx(0.5 * (lean - before), rel=1e-6)
+
+
+def _directions(machine: Machine, position: Array) -> Array:
+    """Of the legs, with the rotation of the home pose."""
+    spans = machine.spans(position, machine.home_turn)
+    return np.asarray(spans / np.linalg.norm(spans, axis=1)[:, None])

@@ -759,9 +759,12 @@ class ArrayPrograms(Programs):
             across_q2_left_up_down = (
                 arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
             )
+            length_q2_squared_left_up_down = (
+                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
+            )
             length_q2_left_up_down = select(
-                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0,
-                root(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down),
+                length_q2_squared_left_up_down > 0.0,
+                root(length_q2_squared_left_up_down),
                 1.0,
             )
             cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
@@ -773,12 +776,12 @@ class ArrayPrograms(Programs):
             across_q2_left_down_down = (
                 arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
             )
+            length_q2_squared_left_down_down = (
+                across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
+            )
             length_q2_left_down_down = select(
-                (
-                    across_q2_left_down_down*across_q2_left_down_down
-                    + along_q2_left_down_down*along_q2_left_down_down > 0.0
-                ),
-                root(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down),
+                length_q2_squared_left_down_down > 0.0,
+                root(length_q2_squared_left_down_down),
                 1.0,
             )
             cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
@@ -794,12 +797,12 @@ class ArrayPrograms(Programs):
             across_q2_left_up_down = (
                 arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
             )
+            length_q2_squared_left_up_down = (
+                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
+            )
             length_q2_left_up_down = select(
-                (
-                    (reach_left_down > 1e-11*machine_scale)
-                    & (across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0)
-                ),
-                root(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down),
+                (length_q2_squared_left_up_down > 0.0) & (reach_left_down > 1e-11*machine_scale),
+                root(length_q2_squared_left_up_down),
                 1.0,
             )
             # its reference where it is free
@@ -820,15 +823,12 @@ class ArrayPrograms(Programs):
             across_q2_left_down_down = (
                 arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
             )
+            length_q2_squared_left_down_down = (
+                across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
+            )
             length_q2_left_down_down = select(
-                (
-                    (reach_left_down > 1e-11*machine_scale)
-                    & (
-                        across_q2_left_down_down*across_q2_left_down_down
-                        + along_q2_left_down_down*along_q2_left_down_down > 0.0
-                    )
-                ),
-                root(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down),
+                (length_q2_squared_left_down_down > 0.0) & (reach_left_down > 1e-11*machine_scale),
+                root(length_q2_squared_left_down_down),
                 1.0,
             )
             # its reference where it is free
@@ -1027,9 +1027,12 @@ class ArrayPrograms(Programs):
                 arm_along_q2_right_down*wrist_y_from_q1_right_down
                 - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
             )
+            length_q2_squared_right_up_down = (
+                across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
+            )
             length_q2_right_up_down = select(
-                (across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down > 0.0),
-                root(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down),
+                length_q2_squared_right_up_down > 0.0,
+                root(length_q2_squared_right_up_down),
                 1.0,
             )
             cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
@@ -1043,15 +1046,12 @@ class ArrayPrograms(Programs):
                 arm_across_q2_right_up_down*wrist_x_from_q1_right_down
                 + arm_along_q2_right_down*wrist_y_from_q1_right_down
             )
+            length_q2_squared_right_down_down = (
+                across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
+            )
             length_q2_right_down_down = select(
-                (
-                    across_q2_right_down_down*across_q2_right_down_down
-                    + along_q2_right_down_down*along_q2_right_down_down > 0.0
-                ),
-                root(
-                    across_q2_right_down_down*across_q2_right_down_down
-                    + along_q2_right_down_down*along_q2_right_down_down
-                ),
+                length_q2_squared_right_down_down > 0.0,
+                root(length_q2_squared_right_down_down),
                 1.0,
             )
             cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
@@ -1069,15 +1069,12 @@ class ArrayPrograms(Programs):
                 arm_along_q2_right_down*wrist_y_from_q1_right_down
                 - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
             )
+            length_q2_squared_right_up_down = (
+                across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
+            )
             length_q2_right_up_down = select(
-                (
-                    (reach_right_down > 1e-11*machine_scale)
-                    & (
-                        across_q2_right_up_down*across_q2_right_up_down
-                        + along_q2_right_up_down*along_q2_right_up_down > 0.0
-                    )
-                ),
-                root(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down),
+                (length_q2_squared_right_up_down > 0.0) & (reach_right_down > 1e-11*machine_scale),
+                root(length_q2_squared_right_up_down),
                 1.0,
             )
             # its reference where it is free
@@ -1100,18 +1097,12 @@ class ArrayPrograms(Programs):
                 arm_across_q2_right_up_down*wrist_x_from_q1_right_down
                 + arm_along_q2_right_down*wrist_y_from_q1_right_down
             )
+            length_q2_squared_right_down_down = (
+                across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
+            )
             length_q2_right_down_down = select(
-                (
-                    (reach_right_down > 1e-11*machine_scale)
-                    & (
-                        across_q2_right_down_down*across_q2_right_down_down
-                        + along_q2_right_down_down*along_q2_right_down_down > 0.0
-                    )
-                ),
-                root(
-                    across_q2_right_down_down*across_q2_right_down_down
-                    + along_q2_right_down_down*along_q2_right_down_down
-                ),
+                (length_q2_squared_right_down_down > 0.0) & (reach_right_down > 1e-11*machine_scale),
+                root(length_q2_squared_right_down_down),
                 1.0,
             )
             # its reference where it is free
@@ -1261,11 +1252,10 @@ class ArrayPrograms(Programs):
             across_q2_left_up_up = (
                 arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
             )
-            length_q2_left_up_up = select(
-                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0,
-                root(across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up),
-                1.0,
+            length_q2_squared_left_up_up = (
+                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
             )
+            length_q2_left_up_up = select(length_q2_squared_left_up_up > 0.0, root(length_q2_squared_left_up_up), 1.0)
             cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
             sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -1275,9 +1265,12 @@ class ArrayPrograms(Programs):
             across_q2_left_down_up = (
                 arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
             )
+            length_q2_squared_left_down_up = (
+                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
+            )
             length_q2_left_down_up = select(
-                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0,
-                root(across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up),
+                length_q2_squared_left_down_up > 0.0,
+                root(length_q2_squared_left_down_up),
                 1.0,
             )
             cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
@@ -1293,12 +1286,12 @@ class ArrayPrograms(Programs):
             across_q2_left_up_up = (
                 arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
             )
+            length_q2_squared_left_up_up = (
+                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
+            )
             length_q2_left_up_up = select(
-                (
-                    (reach_left_up > 1e-11*machine_scale)
-                    & (across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0)
-                ),
-                root(across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up),
+                (length_q2_squared_left_up_up > 0.0) & (reach_left_up > 1e-11*machine_scale),
+                root(length_q2_squared_left_up_up),
                 1.0,
             )
             # its reference where it is free
@@ -1319,12 +1312,12 @@ class ArrayPrograms(Programs):
             across_q2_left_down_up = (
                 arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
             )
+            length_q2_squared_left_down_up = (
+                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
+            )
             length_q2_left_down_up = select(
-                (
-                    (reach_left_up > 1e-11*machine_scale)
-                    & (across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0)
-                ),
-                root(across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up),
+                (length_q2_squared_left_down_up > 0.0) & (reach_left_up > 1e-11*machine_scale),
+                root(length_q2_squared_left_down_up),
                 1.0,
             )
             # its reference where it is free
@@ -1477,11 +1470,10 @@ class ArrayPrograms(Programs):
             across_q2_right_up_up = (
                 arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
             )
-            length_q2_right_up_up = select(
-                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up > 0.0,
-                root(across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up),
-                1.0,
+            length_q2_squared_right_up_up = (
+                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
             )
+            length_q2_right_up_up = select(length_q2_squared_right_up_up > 0.0, root(length_q2_squared_right_up_up), 1.0)
             cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
             sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -1491,9 +1483,12 @@ class ArrayPrograms(Programs):
             across_q2_right_down_up = (
                 arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
             )
+            length_q2_squared_right_down_up = (
+                across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
+            )
             length_q2_right_down_up = select(
-                (across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up > 0.0),
-                root(across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up),
+                length_q2_squared_right_down_up > 0.0,
+                root(length_q2_squared_right_down_up),
                 1.0,
             )
             cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
@@ -1509,12 +1504,12 @@ class ArrayPrograms(Programs):
             across_q2_right_up_up = (
                 arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
             )
+            length_q2_squared_right_up_up = (
+                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
+            )
             length_q2_right_up_up = select(
-                (
-                    (reach_right_up > 1e-11*machine_scale)
-                    & (across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up > 0.0)
-                ),
-                root(across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up),
+                (length_q2_squared_right_up_up > 0.0) & (reach_right_up > 1e-11*machine_scale),
+                root(length_q2_squared_right_up_up),
                 1.0,
             )
             # its reference where it is free
@@ -1535,15 +1530,12 @@ class ArrayPrograms(Programs):
             across_q2_right_down_up = (
                 arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
             )
+            length_q2_squared_right_down_up = (
+                across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
+            )
             length_q2_right_down_up = select(
-                (
-                    (reach_right_up > 1e-11*machine_scale)
-                    & (
-                        across_q2_right_down_up*across_q2_right_down_up
-                        + along_q2_right_down_up*along_q2_right_down_up > 0.0
-                    )
-                ),
-                root(across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up),
+                (length_q2_squared_right_down_up > 0.0) & (reach_right_up > 1e-11*machine_scale),
+                root(length_q2_squared_right_down_up),
                 1.0,
             )
             # its reference where it is free

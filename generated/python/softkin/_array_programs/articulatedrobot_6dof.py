@@ -532,11 +532,10 @@ class ArrayPrograms(Programs):
             across_q2_front_down = (
                 arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
             )
-            length_q2_front_down = select(
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0,
-                root(across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down),
-                1.0,
+            length_q2_squared_front_down = (
+                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
             )
+            length_q2_front_down = select(length_q2_squared_front_down > 0.0, root(length_q2_squared_front_down), 1.0)
             cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
             sin_q2_front_down = across_q2_front_down/length_q2_front_down
             arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
@@ -544,11 +543,8 @@ class ArrayPrograms(Programs):
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
             across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_front_up = select(
-                across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0,
-                root(across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up),
-                1.0,
-            )
+            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
+            length_q2_front_up = select(length_q2_squared_front_up > 0.0, root(length_q2_squared_front_up), 1.0)
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
@@ -560,12 +556,12 @@ class ArrayPrograms(Programs):
             across_q2_front_down = (
                 arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
             )
+            length_q2_squared_front_down = (
+                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
+            )
             length_q2_front_down = select(
-                (
-                    (reach_front > 1e-11*machine_scale)
-                    & (across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0)
-                ),
-                root(across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down),
+                (length_q2_squared_front_down > 0.0) & (reach_front > 1e-11*machine_scale),
+                root(length_q2_squared_front_down),
                 1.0,
             )
             # its reference where it is free
@@ -584,12 +580,10 @@ class ArrayPrograms(Programs):
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
             across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
+            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
             length_q2_front_up = select(
-                (
-                    (reach_front > 1e-11*machine_scale)
-                    & (across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0)
-                ),
-                root(across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up),
+                (length_q2_squared_front_up > 0.0) & (reach_front > 1e-11*machine_scale),
+                root(length_q2_squared_front_up),
                 1.0,
             )
             # its reference where it is free
@@ -661,11 +655,8 @@ class ArrayPrograms(Programs):
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
             across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_back_down = select(
-                across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0,
-                root(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down),
-                1.0,
-            )
+            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
+            length_q2_back_down = select(length_q2_squared_back_down > 0.0, root(length_q2_squared_back_down), 1.0)
             cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
             sin_q2_back_down = across_q2_back_down/length_q2_back_down
             arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
@@ -673,11 +664,8 @@ class ArrayPrograms(Programs):
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
             across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_back_up = select(
-                across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0,
-                root(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up),
-                1.0,
-            )
+            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
+            length_q2_back_up = select(length_q2_squared_back_up > 0.0, root(length_q2_squared_back_up), 1.0)
             cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
             sin_q2_back_up = across_q2_back_up/length_q2_back_up
         else:
@@ -687,12 +675,10 @@ class ArrayPrograms(Programs):
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
             across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
+            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
             length_q2_back_down = select(
-                (
-                    (reach_back > 1e-11*machine_scale)
-                    & (across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0)
-                ),
-                root(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down),
+                (length_q2_squared_back_down > 0.0) & (reach_back > 1e-11*machine_scale),
+                root(length_q2_squared_back_down),
                 1.0,
             )
             # its reference where it is free
@@ -711,12 +697,10 @@ class ArrayPrograms(Programs):
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
             across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
+            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
             length_q2_back_up = select(
-                (
-                    (reach_back > 1e-11*machine_scale)
-                    & (across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0)
-                ),
-                root(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up),
+                (length_q2_squared_back_up > 0.0) & (reach_back > 1e-11*machine_scale),
+                root(length_q2_squared_back_up),
                 1.0,
             )
             # its reference where it is free

@@ -317,20 +317,14 @@ class ArrayPrograms(Programs):
             # a2: linear pair in the x and y equations
             along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
             across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-            length_a2_right = select(
-                across_a2_right*across_a2_right + along_a2_right*along_a2_right > 0.0,
-                root(across_a2_right*across_a2_right + along_a2_right*along_a2_right),
-                1.0,
-            )
+            length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
+            length_a2_right = select(length_a2_squared_right > 0.0, root(length_a2_squared_right), 1.0)
             cos_a2_right = along_a2_right/length_a2_right  # its reference where it is free
             sin_a2_right = across_a2_right/length_a2_right
             along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
             across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
-            length_a2_left = select(
-                across_a2_left*across_a2_left + along_a2_left*along_a2_left > 0.0,
-                root(across_a2_left*across_a2_left + along_a2_left*along_a2_left),
-                1.0,
-            )
+            length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
+            length_a2_left = select(length_a2_squared_left > 0.0, root(length_a2_squared_left), 1.0)
             cos_a2_left = along_a2_left/length_a2_left  # its reference where it is free
             sin_a2_left = across_a2_left/length_a2_left
         else:
@@ -340,9 +334,10 @@ class ArrayPrograms(Programs):
             # a2: linear pair in the x and y equations
             along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
             across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
+            length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
             length_a2_right = select(
-                ((reach > 1e-11*machine_scale) & (across_a2_right*across_a2_right + along_a2_right*along_a2_right > 0.0)),
-                root(across_a2_right*across_a2_right + along_a2_right*along_a2_right),
+                (length_a2_squared_right > 0.0) & (reach > 1e-11*machine_scale),
+                root(length_a2_squared_right),
                 1.0,
             )
             # its reference where it is free
@@ -350,9 +345,10 @@ class ArrayPrograms(Programs):
             sin_a2_right = select(reach > 1e-11*machine_scale, across_a2_right/length_a2_right, sin(free_a2))
             along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
             across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
+            length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
             length_a2_left = select(
-                ((reach > 1e-11*machine_scale) & (across_a2_left*across_a2_left + along_a2_left*along_a2_left > 0.0)),
-                root(across_a2_left*across_a2_left + along_a2_left*along_a2_left),
+                (length_a2_squared_left > 0.0) & (reach > 1e-11*machine_scale),
+                root(length_a2_squared_left),
                 1.0,
             )
             # its reference where it is free

@@ -313,20 +313,14 @@ class ArrayPrograms(Programs):
             arm_across_a1_right = link_length_2*sin_a2_right
             along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
             across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_right = select(
-                across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0,
-                root(across_a1_right*across_a1_right + along_a1_right*along_a1_right),
-                1.0,
-            )
+            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
+            length_a1_right = select(length_a1_squared_right > 0.0, root(length_a1_squared_right), 1.0)
             cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
             sin_a1_right = across_a1_right/length_a1_right
             along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
             across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_left = select(
-                across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0,
-                root(across_a1_left*across_a1_left + along_a1_left*along_a1_left),
-                1.0,
-            )
+            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
+            length_a1_left = select(length_a1_squared_left > 0.0, root(length_a1_squared_left), 1.0)
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
@@ -335,9 +329,10 @@ class ArrayPrograms(Programs):
             arm_across_a1_right = link_length_2*sin_a2_right
             along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
             across_a1_right = arm_along_a1*y - arm_across_a1_right*x
+            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
             length_a1_right = select(
-                ((reach > 1e-11*machine_scale) & (across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0)),
-                root(across_a1_right*across_a1_right + along_a1_right*along_a1_right),
+                (length_a1_squared_right > 0.0) & (reach > 1e-11*machine_scale),
+                root(length_a1_squared_right),
                 1.0,
             )
             # its reference where it is free
@@ -345,9 +340,10 @@ class ArrayPrograms(Programs):
             sin_a1_right = select(reach > 1e-11*machine_scale, across_a1_right/length_a1_right, sin(free_a1))
             along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
             across_a1_left = arm_across_a1_right*x + arm_along_a1*y
+            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
             length_a1_left = select(
-                ((reach > 1e-11*machine_scale) & (across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0)),
-                root(across_a1_left*across_a1_left + along_a1_left*along_a1_left),
+                (length_a1_squared_left > 0.0) & (reach > 1e-11*machine_scale),
+                root(length_a1_squared_left),
                 1.0,
             )
             # its reference where it is free

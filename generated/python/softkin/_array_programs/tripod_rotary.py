@@ -493,12 +493,12 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
+        span_1_z_squared = stewart_radius*stewart_radius - 0.25*distance*distance
         # rod 1
         span_1_z = (
             z
             - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
+                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
                 + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )
@@ -600,8 +600,7 @@ class ArrayPrograms(Programs):
         # rod 1
         pivot_1_z_outward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
+                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
                 + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )
@@ -633,8 +632,7 @@ class ArrayPrograms(Programs):
         # rod 2
         pivot_2_z_outward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
+                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
                 + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )
@@ -666,8 +664,7 @@ class ArrayPrograms(Programs):
         # rod 3
         pivot_3_z_outward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
+                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
                 + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )
@@ -721,8 +718,7 @@ class ArrayPrograms(Programs):
         # rod 1
         pivot_1_z_inward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
+                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
                 + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )
@@ -761,8 +757,7 @@ class ArrayPrograms(Programs):
         # rod 2
         pivot_2_z_inward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
+                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
                 + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )
@@ -814,8 +809,7 @@ class ArrayPrograms(Programs):
         # rod 3
         pivot_3_z_inward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
+                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
                 + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )

@@ -32,7 +32,7 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "z of a planar machine [u]", missing)
     root_square_a2 = -(y - arm_length)*(arm_length + y)
     if not (root_square_a2 >= -2.5e-13*arm_length*arm_length):
-        missing = 0.5*abs(arm_length - y) + 0.5*abs(arm_length + y) - y
+        missing = arm_length + 0.5*abs(arm_length - y) + 0.5*abs(arm_length + y)
         return Diagnosis(Status.UNREACHABLE, "rod 1 (through x) cannot reach [u]", missing)
     type2_flat = assembly_sign*y/arm_length
     if not (type2_flat >= min_type2_margin):

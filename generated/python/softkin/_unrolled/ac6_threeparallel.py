@@ -54,6 +54,14 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     size_q6_of_q3 = k.size_q6_of_q3
+    machine_scale_times_free_angle = 1e-11*machine_scale
+    a2_squared_plus_a3_squared = a2*a2 + a3*a3
+    size_q6_of_q3_times_rounding = 1e-12*size_q6_of_q3
+    a2_plus_a3 = a2 + a3
+    a2_minus_a3 = a2 - a3
+    scale_q3_squared = scale_q3*scale_q3
+    offset_a3_times_2 = 2.0*offset_a3
+    offset_a5_times_2 = 2.0*offset_a5
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -82,12 +90,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
+        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(3.0,)
-        if distance_q1 > 1e-11*machine_scale:
+        if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d4/divisor_q1
             sin_swing_q1_left = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
@@ -134,7 +142,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_left_down = (
             wrist_x_from_q1_here_left_down*wrist_x_from_q1_here_left_down
-            + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2*a2 - a3*a3
+            + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2_squared_plus_a3_squared
         )
         if abs(value_q6_of_q3_left_down) <= size_q6_of_q3:
             cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
@@ -151,7 +159,7 @@ def unrolled(k: Constants) -> Unrolled:
             swing_q6_of_q3_left_down = sqrt(
                 across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
             )
-            if swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3:
+            if swing_q6_of_q3_left_down > size_q6_of_q3_times_rounding:
                 level_q6_of_q3_left_down = (
                     value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
                     - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
@@ -233,14 +241,14 @@ def unrolled(k: Constants) -> Unrolled:
         reach_left_down = sqrt(
             wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
         )
-        cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
+        cos_q3_left_down = (reach_left_down*reach_left_down - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_left_down = (
-            (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
-            *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
+            (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down)*(a2_plus_a3 + reach_left_down)
+            *(a2_plus_a3 - reach_left_down)/scale_q3_squared
         )
         sin_q3_left_up_down = (sqrt(sine_square_q3_left_down) if sine_square_q3_left_down > 0.0 else 0.0)
-        if reach_left_down > 1e-11*machine_scale:
+        if reach_left_down > machine_scale_times_free_angle:
             arm_along_q2_left_down = a2 + a3*cos_q3_left_down
             arm_across_q2_left_up_down = a3*sin_q3_left_up_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -250,11 +258,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_left_up_down = (
                 arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
             )
-            length_q2_left_up_down = (
-                sqrt(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down)
-                if across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0
-                else 1.0
+            length_q2_squared_left_up_down = (
+                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
             )
+            length_q2_left_up_down = sqrt(length_q2_squared_left_up_down) if length_q2_squared_left_up_down > 0.0 else 1.0
             cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
             sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -264,9 +271,12 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_left_down_down = (
                 arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
             )
+            length_q2_squared_left_down_down = (
+                across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
+            )
             length_q2_left_down_down = (
-                sqrt(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down)
-                if across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down > 0.0
+                sqrt(length_q2_squared_left_down_down)
+                if length_q2_squared_left_down_down > 0.0
                 else 1.0
             )
             cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
@@ -289,7 +299,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_left_up = (
             wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
-            + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2*a2 - a3*a3
+            + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2_squared_plus_a3_squared
         )
         if abs(value_q6_of_q3_left_up) <= size_q6_of_q3:
             cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
@@ -306,7 +316,7 @@ def unrolled(k: Constants) -> Unrolled:
             swing_q6_of_q3_left_up = sqrt(
                 across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
             )
-            if swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3:
+            if swing_q6_of_q3_left_up > size_q6_of_q3_times_rounding:
                 level_q6_of_q3_left_up = (
                     value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
                     - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
@@ -382,14 +392,14 @@ def unrolled(k: Constants) -> Unrolled:
         reach_left_up = sqrt(
             wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
         )
-        cos_q3_left_up = (reach_left_up*reach_left_up - a2*a2 - a3*a3)/scale_q3
+        cos_q3_left_up = (reach_left_up*reach_left_up - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_left_up = (
-            (a3 + reach_left_up - a2)*(a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)*(a2 + reach_left_up - a3)
-            /(scale_q3*scale_q3)
+            (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up)*(a2_plus_a3 + reach_left_up)
+            *(a2_plus_a3 - reach_left_up)/scale_q3_squared
         )
         sin_q3_left_up_up = (sqrt(sine_square_q3_left_up) if sine_square_q3_left_up > 0.0 else 0.0)
-        if reach_left_up > 1e-11*machine_scale:
+        if reach_left_up > machine_scale_times_free_angle:
             arm_along_q2_left_up = a2 + a3*cos_q3_left_up
             arm_across_q2_left_up_up = a3*sin_q3_left_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -399,11 +409,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_left_up_up = (
                 arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
             )
-            length_q2_left_up_up = (
-                sqrt(across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up)
-                if across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0
-                else 1.0
+            length_q2_squared_left_up_up = (
+                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
             )
+            length_q2_left_up_up = sqrt(length_q2_squared_left_up_up) if length_q2_squared_left_up_up > 0.0 else 1.0
             cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
             sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -413,11 +422,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_left_down_up = (
                 arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
             )
-            length_q2_left_down_up = (
-                sqrt(across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up)
-                if across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0
-                else 1.0
+            length_q2_squared_left_down_up = (
+                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
             )
+            length_q2_left_down_up = sqrt(length_q2_squared_left_down_up) if length_q2_squared_left_down_up > 0.0 else 1.0
             cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
             sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
         else:
@@ -467,8 +475,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left_down_down = offset_a2 + arctan2(sin_q2_left_down_down, cos_q2_left_down_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a2_left_down_down - open_a2 < 179.999999999:
             axis_a2_left_down_down = nearest_period(axis_a2_left_down_down, open_a2)
-        # A3: its turn
-        axis_a3_left_down_down = offset_a3 + arctan2(-sin_q3_left_up_down, cos_q3_left_down + 0.0)/DEGREE
+        axis_a3_left_down_down = offset_a3_times_2 - axis_a3_left_up_down  # A3: its turn
         if not -180.000000001 <= axis_a3_left_down_down - open_a3 < 179.999999999:
             axis_a3_left_down_down = nearest_period(axis_a3_left_down_down, open_a3)
         cos_q23_left_down_down = cos_q2_left_down_down*cos_q3_left_down + sin_q2_left_down_down*sin_q3_left_up_down
@@ -504,7 +511,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_left_up_up = offset_a4 + arctan2(sin_q4_left_up_up, cos_q4_left_up_up + 0.0)/DEGREE  # A4: its turn
         if not -180.000000001 <= axis_a4_left_up_up - open_a4 < 179.999999999:
             axis_a4_left_up_up = nearest_period(axis_a4_left_up_up, open_a4)
-        axis_a5_left_up = offset_a5 + arctan2(-radius_q6_left, -r23_from_q1_left + 0.0)/DEGREE  # A5: its turn
+        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: its turn
         if not -180.000000001 <= axis_a5_left_up - open_a5 < 179.999999999:
             axis_a5_left_up = nearest_period(axis_a5_left_up, open_a5)
         axis_a6_left_up = offset_a6 + arctan2(sin_q6_left_up, cos_q6_left_up + 0.0)/DEGREE  # A6: its turn
@@ -514,7 +521,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left_down_up = offset_a2 + arctan2(sin_q2_left_down_up, cos_q2_left_down_up + 0.0)/DEGREE
         if not -180.000000001 <= axis_a2_left_down_up - open_a2 < 179.999999999:
             axis_a2_left_down_up = nearest_period(axis_a2_left_down_up, open_a2)
-        axis_a3_left_down_up = offset_a3 + arctan2(-sin_q3_left_up_up, cos_q3_left_up + 0.0)/DEGREE  # A3: its turn
+        axis_a3_left_down_up = offset_a3_times_2 - axis_a3_left_up_up  # A3: its turn
         if not -180.000000001 <= axis_a3_left_down_up - open_a3 < 179.999999999:
             axis_a3_left_down_up = nearest_period(axis_a3_left_down_up, open_a3)
         cos_q23_left_down_up = cos_q2_left_down_up*cos_q3_left_up + sin_q2_left_down_up*sin_q3_left_up_up
@@ -606,7 +613,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_right_down = (
             wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
-            + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2*a2 - a3*a3
+            + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2_squared_plus_a3_squared
         )
         if abs(value_q6_of_q3_right_down) <= size_q6_of_q3:
             cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
@@ -624,7 +631,7 @@ def unrolled(k: Constants) -> Unrolled:
                 across_q6_of_q3_right_down*across_q6_of_q3_right_down
                 + along_q6_of_q3_right_down*along_q6_of_q3_right_down
             )
-            if swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3:
+            if swing_q6_of_q3_right_down > size_q6_of_q3_times_rounding:
                 level_q6_of_q3_right_down = (
                     value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
                     - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
@@ -709,14 +716,14 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
             + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
         )
-        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
+        cos_q3_right_down = (reach_right_down*reach_right_down - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_right_down = (
-            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
-            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
+            (reach_right_down - a2_minus_a3)*(a2_minus_a3 + reach_right_down)*(a2_plus_a3 + reach_right_down)
+            *(a2_plus_a3 - reach_right_down)/scale_q3_squared
         )
         sin_q3_right_up_down = (sqrt(sine_square_q3_right_down) if sine_square_q3_right_down > 0.0 else 0.0)
-        if reach_right_down > 1e-11*machine_scale:
+        if reach_right_down > machine_scale_times_free_angle:
             arm_along_q2_right_down = a2 + a3*cos_q3_right_down
             arm_across_q2_right_up_down = a3*sin_q3_right_up_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -728,9 +735,12 @@ def unrolled(k: Constants) -> Unrolled:
                 arm_along_q2_right_down*wrist_y_from_q1_right_down
                 - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
             )
+            length_q2_squared_right_up_down = (
+                across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
+            )
             length_q2_right_up_down = (
-                sqrt(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down)
-                if across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down > 0.0
+                sqrt(length_q2_squared_right_up_down)
+                if length_q2_squared_right_up_down > 0.0
                 else 1.0
             )
             cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
@@ -744,12 +754,12 @@ def unrolled(k: Constants) -> Unrolled:
                 arm_across_q2_right_up_down*wrist_x_from_q1_right_down
                 + arm_along_q2_right_down*wrist_y_from_q1_right_down
             )
+            length_q2_squared_right_down_down = (
+                across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
+            )
             length_q2_right_down_down = (
-                sqrt(
-                    across_q2_right_down_down*across_q2_right_down_down
-                    + along_q2_right_down_down*along_q2_right_down_down
-                )
-                if across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down > 0.0
+                sqrt(length_q2_squared_right_down_down)
+                if length_q2_squared_right_down_down > 0.0
                 else 1.0
             )
             cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
@@ -772,7 +782,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_right_up = (
             wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
-            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
+            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2_squared_plus_a3_squared
         )
         if abs(value_q6_of_q3_right_up) <= size_q6_of_q3:
             cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
@@ -789,7 +799,7 @@ def unrolled(k: Constants) -> Unrolled:
             swing_q6_of_q3_right_up = sqrt(
                 across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
             )
-            if swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3:
+            if swing_q6_of_q3_right_up > size_q6_of_q3_times_rounding:
                 level_q6_of_q3_right_up = (
                     value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
                     - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
@@ -868,14 +878,14 @@ def unrolled(k: Constants) -> Unrolled:
         reach_right_up = sqrt(
             wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
         )
-        cos_q3_right_up = (reach_right_up*reach_right_up - a2*a2 - a3*a3)/scale_q3
+        cos_q3_right_up = (reach_right_up*reach_right_up - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_right_up = (
-            (a3 + reach_right_up - a2)*(a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
-            *(a2 + reach_right_up - a3)/(scale_q3*scale_q3)
+            (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up)*(a2_plus_a3 + reach_right_up)
+            *(a2_plus_a3 - reach_right_up)/scale_q3_squared
         )
         sin_q3_right_up_up = (sqrt(sine_square_q3_right_up) if sine_square_q3_right_up > 0.0 else 0.0)
-        if reach_right_up > 1e-11*machine_scale:
+        if reach_right_up > machine_scale_times_free_angle:
             arm_along_q2_right_up = a2 + a3*cos_q3_right_up
             arm_across_q2_right_up_up = a3*sin_q3_right_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -885,11 +895,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_right_up_up = (
                 arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
             )
-            length_q2_right_up_up = (
-                sqrt(across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up)
-                if across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up > 0.0
-                else 1.0
+            length_q2_squared_right_up_up = (
+                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
             )
+            length_q2_right_up_up = sqrt(length_q2_squared_right_up_up) if length_q2_squared_right_up_up > 0.0 else 1.0
             cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
             sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -899,9 +908,12 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_right_down_up = (
                 arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
             )
+            length_q2_squared_right_down_up = (
+                across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
+            )
             length_q2_right_down_up = (
-                sqrt(across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up)
-                if across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up > 0.0
+                sqrt(length_q2_squared_right_down_up)
+                if length_q2_squared_right_down_up > 0.0
                 else 1.0
             )
             cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
@@ -948,8 +960,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right_down_down = offset_a2 + arctan2(sin_q2_right_down_down, cos_q2_right_down_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a2_right_down_down - open_a2 < 179.999999999:
             axis_a2_right_down_down = nearest_period(axis_a2_right_down_down, open_a2)
-        # A3: its turn
-        axis_a3_right_down_down = offset_a3 + arctan2(-sin_q3_right_up_down, cos_q3_right_down + 0.0)/DEGREE
+        axis_a3_right_down_down = offset_a3_times_2 - axis_a3_right_up_down  # A3: its turn
         if not -180.000000001 <= axis_a3_right_down_down - open_a3 < 179.999999999:
             axis_a3_right_down_down = nearest_period(axis_a3_right_down_down, open_a3)
         cos_q23_right_down_down = (
@@ -989,7 +1000,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_right_up_up = offset_a4 + arctan2(sin_q4_right_up_up, cos_q4_right_up_up + 0.0)/DEGREE  # A4: its turn
         if not -180.000000001 <= axis_a4_right_up_up - open_a4 < 179.999999999:
             axis_a4_right_up_up = nearest_period(axis_a4_right_up_up, open_a4)
-        axis_a5_right_up = offset_a5 + arctan2(-radius_q6_right, -r23_from_q1_right + 0.0)/DEGREE  # A5: its turn
+        axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down  # A5: its turn
         if not -180.000000001 <= axis_a5_right_up - open_a5 < 179.999999999:
             axis_a5_right_up = nearest_period(axis_a5_right_up, open_a5)
         axis_a6_right_up = offset_a6 + arctan2(sin_q6_right_up, cos_q6_right_up + 0.0)/DEGREE  # A6: its turn
@@ -999,7 +1010,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right_down_up = offset_a2 + arctan2(sin_q2_right_down_up, cos_q2_right_down_up + 0.0)/DEGREE
         if not -180.000000001 <= axis_a2_right_down_up - open_a2 < 179.999999999:
             axis_a2_right_down_up = nearest_period(axis_a2_right_down_up, open_a2)
-        axis_a3_right_down_up = offset_a3 + arctan2(-sin_q3_right_up_up, cos_q3_right_up + 0.0)/DEGREE  # A3: its turn
+        axis_a3_right_down_up = offset_a3_times_2 - axis_a3_right_up_up  # A3: its turn
         if not -180.000000001 <= axis_a3_right_down_up - open_a3 < 179.999999999:
             axis_a3_right_down_up = nearest_period(axis_a3_right_down_up, open_a3)
         cos_q23_right_down_up = cos_q2_right_down_up*cos_q3_right_up + sin_q2_right_down_up*sin_q3_right_up_up
@@ -1138,12 +1149,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
+        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(None,)
-        if distance_q1 > 1e-11*machine_scale:
+        if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d4/divisor_q1
             sin_swing_q1_left = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
@@ -1190,7 +1201,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_left_down = (
             wrist_x_from_q1_here_left_down*wrist_x_from_q1_here_left_down
-            + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2*a2 - a3*a3
+            + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2_squared_plus_a3_squared
         )
         if abs(value_q6_of_q3_left_down) <= size_q6_of_q3:
             cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
@@ -1207,7 +1218,7 @@ def unrolled(k: Constants) -> Unrolled:
             swing_q6_of_q3_left_down = sqrt(
                 across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
             )
-            if swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3:
+            if swing_q6_of_q3_left_down > size_q6_of_q3_times_rounding:
                 level_q6_of_q3_left_down = (
                     value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
                     - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
@@ -1289,12 +1300,12 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # kept as a product
         sine_square_q3_left_down = (
-            (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
-            *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
+            (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down)*(a2_plus_a3 + reach_left_down)
+            *(a2_plus_a3 - reach_left_down)/scale_q3_squared
         )
-        cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
+        cos_q3_left_down = (reach_left_down*reach_left_down - a2_squared_plus_a3_squared)/scale_q3
         sin_q3_left_up_down = (sqrt(sine_square_q3_left_down) if sine_square_q3_left_down > 0.0 else 0.0)
-        if reach_left_down > 1e-11*machine_scale:
+        if reach_left_down > machine_scale_times_free_angle:
             arm_along_q2_left_down = a2 + a3*cos_q3_left_down
             arm_across_q2_left_up_down = a3*sin_q3_left_up_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -1304,11 +1315,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_left_up_down = (
                 arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
             )
-            length_q2_left_up_down = (
-                sqrt(across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down)
-                if across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down > 0.0
-                else 1.0
+            length_q2_squared_left_up_down = (
+                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
             )
+            length_q2_left_up_down = sqrt(length_q2_squared_left_up_down) if length_q2_squared_left_up_down > 0.0 else 1.0
             cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
             sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -1318,9 +1328,12 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_left_down_down = (
                 arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
             )
+            length_q2_squared_left_down_down = (
+                across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
+            )
             length_q2_left_down_down = (
-                sqrt(across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down)
-                if across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down > 0.0
+                sqrt(length_q2_squared_left_down_down)
+                if length_q2_squared_left_down_down > 0.0
                 else 1.0
             )
             cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
@@ -1361,7 +1374,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_right_down = (
             wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
-            + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2*a2 - a3*a3
+            + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2_squared_plus_a3_squared
         )
         if abs(value_q6_of_q3_right_down) <= size_q6_of_q3:
             cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
@@ -1379,7 +1392,7 @@ def unrolled(k: Constants) -> Unrolled:
                 across_q6_of_q3_right_down*across_q6_of_q3_right_down
                 + along_q6_of_q3_right_down*along_q6_of_q3_right_down
             )
-            if swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3:
+            if swing_q6_of_q3_right_down > size_q6_of_q3_times_rounding:
                 level_q6_of_q3_right_down = (
                     value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
                     - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
@@ -1464,12 +1477,12 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # kept as a product
         sine_square_q3_right_down = (
-            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
-            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
+            (reach_right_down - a2_minus_a3)*(a2_minus_a3 + reach_right_down)*(a2_plus_a3 + reach_right_down)
+            *(a2_plus_a3 - reach_right_down)/scale_q3_squared
         )
-        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
+        cos_q3_right_down = (reach_right_down*reach_right_down - a2_squared_plus_a3_squared)/scale_q3
         sin_q3_right_up_down = (sqrt(sine_square_q3_right_down) if sine_square_q3_right_down > 0.0 else 0.0)
-        if reach_right_down > 1e-11*machine_scale:
+        if reach_right_down > machine_scale_times_free_angle:
             arm_along_q2_right_down = a2 + a3*cos_q3_right_down
             arm_across_q2_right_up_down = a3*sin_q3_right_up_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -1481,9 +1494,12 @@ def unrolled(k: Constants) -> Unrolled:
                 arm_along_q2_right_down*wrist_y_from_q1_right_down
                 - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
             )
+            length_q2_squared_right_up_down = (
+                across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
+            )
             length_q2_right_up_down = (
-                sqrt(across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down)
-                if across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down > 0.0
+                sqrt(length_q2_squared_right_up_down)
+                if length_q2_squared_right_up_down > 0.0
                 else 1.0
             )
             cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
@@ -1497,12 +1513,12 @@ def unrolled(k: Constants) -> Unrolled:
                 arm_across_q2_right_up_down*wrist_x_from_q1_right_down
                 + arm_along_q2_right_down*wrist_y_from_q1_right_down
             )
+            length_q2_squared_right_down_down = (
+                across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
+            )
             length_q2_right_down_down = (
-                sqrt(
-                    across_q2_right_down_down*across_q2_right_down_down
-                    + along_q2_right_down_down*along_q2_right_down_down
-                )
-                if across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down > 0.0
+                sqrt(length_q2_squared_right_down_down)
+                if length_q2_squared_right_down_down > 0.0
                 else 1.0
             )
             cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
@@ -1525,7 +1541,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_left_up = (
             wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
-            + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2*a2 - a3*a3
+            + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2_squared_plus_a3_squared
         )
         if abs(value_q6_of_q3_left_up) <= size_q6_of_q3:
             cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
@@ -1542,7 +1558,7 @@ def unrolled(k: Constants) -> Unrolled:
             swing_q6_of_q3_left_up = sqrt(
                 across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
             )
-            if swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3:
+            if swing_q6_of_q3_left_up > size_q6_of_q3_times_rounding:
                 level_q6_of_q3_left_up = (
                     value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
                     - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
@@ -1620,12 +1636,12 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # kept as a product
         sine_square_q3_left_up = (
-            (a3 + reach_left_up - a2)*(a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)*(a2 + reach_left_up - a3)
-            /(scale_q3*scale_q3)
+            (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up)*(a2_plus_a3 + reach_left_up)
+            *(a2_plus_a3 - reach_left_up)/scale_q3_squared
         )
-        cos_q3_left_up = (reach_left_up*reach_left_up - a2*a2 - a3*a3)/scale_q3
+        cos_q3_left_up = (reach_left_up*reach_left_up - a2_squared_plus_a3_squared)/scale_q3
         sin_q3_left_up_up = (sqrt(sine_square_q3_left_up) if sine_square_q3_left_up > 0.0 else 0.0)
-        if reach_left_up > 1e-11*machine_scale:
+        if reach_left_up > machine_scale_times_free_angle:
             arm_along_q2_left_up = a2 + a3*cos_q3_left_up
             arm_across_q2_left_up_up = a3*sin_q3_left_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -1635,11 +1651,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_left_up_up = (
                 arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
             )
-            length_q2_left_up_up = (
-                sqrt(across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up)
-                if across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up > 0.0
-                else 1.0
+            length_q2_squared_left_up_up = (
+                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
             )
+            length_q2_left_up_up = sqrt(length_q2_squared_left_up_up) if length_q2_squared_left_up_up > 0.0 else 1.0
             cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
             sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -1649,11 +1664,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_left_down_up = (
                 arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
             )
-            length_q2_left_down_up = (
-                sqrt(across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up)
-                if across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up > 0.0
-                else 1.0
+            length_q2_squared_left_down_up = (
+                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
             )
+            length_q2_left_down_up = sqrt(length_q2_squared_left_down_up) if length_q2_squared_left_down_up > 0.0 else 1.0
             cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
             sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
         else:
@@ -1674,7 +1688,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_right_up = (
             wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
-            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
+            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2_squared_plus_a3_squared
         )
         if abs(value_q6_of_q3_right_up) <= size_q6_of_q3:
             cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
@@ -1691,7 +1705,7 @@ def unrolled(k: Constants) -> Unrolled:
             swing_q6_of_q3_right_up = sqrt(
                 across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
             )
-            if swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3:
+            if swing_q6_of_q3_right_up > size_q6_of_q3_times_rounding:
                 level_q6_of_q3_right_up = (
                     value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
                     - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
@@ -1770,12 +1784,12 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # kept as a product
         sine_square_q3_right_up = (
-            (a3 + reach_right_up - a2)*(a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
-            *(a2 + reach_right_up - a3)/(scale_q3*scale_q3)
+            (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up)*(a2_plus_a3 + reach_right_up)
+            *(a2_plus_a3 - reach_right_up)/scale_q3_squared
         )
-        cos_q3_right_up = (reach_right_up*reach_right_up - a2*a2 - a3*a3)/scale_q3
+        cos_q3_right_up = (reach_right_up*reach_right_up - a2_squared_plus_a3_squared)/scale_q3
         sin_q3_right_up_up = (sqrt(sine_square_q3_right_up) if sine_square_q3_right_up > 0.0 else 0.0)
-        if reach_right_up > 1e-11*machine_scale:
+        if reach_right_up > machine_scale_times_free_angle:
             arm_along_q2_right_up = a2 + a3*cos_q3_right_up
             arm_across_q2_right_up_up = a3*sin_q3_right_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -1785,11 +1799,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_right_up_up = (
                 arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
             )
-            length_q2_right_up_up = (
-                sqrt(across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up)
-                if across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up > 0.0
-                else 1.0
+            length_q2_squared_right_up_up = (
+                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
             )
+            length_q2_right_up_up = sqrt(length_q2_squared_right_up_up) if length_q2_squared_right_up_up > 0.0 else 1.0
             cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
             sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -1799,9 +1812,12 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_right_down_up = (
                 arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
             )
+            length_q2_squared_right_down_up = (
+                across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
+            )
             length_q2_right_down_up = (
-                sqrt(across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up)
-                if across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up > 0.0
+                sqrt(length_q2_squared_right_down_up)
+                if length_q2_squared_right_down_up > 0.0
                 else 1.0
             )
             cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
@@ -1850,7 +1866,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down)/DEGREE  # A6: its turn
         # A2: its turn
         axis_a2_left_down_down = offset_a2 + arctan2(sin_q2_left_down_down, cos_q2_left_down_down)/DEGREE
-        axis_a3_left_down_down = offset_a3 + arctan2(-sin_q3_left_up_down, cos_q3_left_down)/DEGREE  # A3: its turn
+        axis_a3_left_down_down = offset_a3_times_2 - axis_a3_left_up_down  # A3: its turn
         cos_q23_left_down_down = cos_q2_left_down_down*cos_q3_left_down + sin_q2_left_down_down*sin_q3_left_up_down
         sin_q23_left_down_down = cos_q3_left_down*sin_q2_left_down_down - cos_q2_left_down_down*sin_q3_left_up_down
         # q4: what the sum q234 leaves
@@ -1866,7 +1882,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_left_down_down = offset_a4 + arctan2(sin_q4_left_down_down, cos_q4_left_down_down)/DEGREE
         # A2: its turn
         axis_a2_right_down_down = offset_a2 + arctan2(sin_q2_right_down_down, cos_q2_right_down_down)/DEGREE
-        axis_a3_right_down_down = offset_a3 + arctan2(-sin_q3_right_up_down, cos_q3_right_down)/DEGREE  # A3: its turn
+        axis_a3_right_down_down = offset_a3_times_2 - axis_a3_right_up_down  # A3: its turn
         cos_q23_right_down_down = (
             cos_q2_right_down_down*cos_q3_right_down + sin_q2_right_down_down*sin_q3_right_up_down
         )
@@ -1897,7 +1913,7 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56_left_up*cos_q23_left_up_up - r22_from_q1_before_q6_left_up*sin_q23_left_up_up
         )
         axis_a4_left_up_up = offset_a4 + arctan2(sin_q4_left_up_up, cos_q4_left_up_up)/DEGREE  # A4: its turn
-        axis_a5_left_up = offset_a5 + arctan2(-radius_q6_left, -r23_from_q1_left)/DEGREE  # A5: its turn
+        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: its turn
         axis_a6_left_up = offset_a6 + arctan2(sin_q6_left_up, cos_q6_left_up)/DEGREE  # A6: its turn
         refusal_right_up = 0.0 if sine_square_q3_right_up >= -1e-12 else 3.0  # q3: out of reach
         axis_a2_right_up_up = offset_a2 + arctan2(sin_q2_right_up_up, cos_q2_right_up_up)/DEGREE  # A2: its turn
@@ -1912,10 +1928,10 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56_right_up*cos_q23_right_up_up - r22_from_q1_before_q6_right_up*sin_q23_right_up_up
         )
         axis_a4_right_up_up = offset_a4 + arctan2(sin_q4_right_up_up, cos_q4_right_up_up)/DEGREE  # A4: its turn
-        axis_a5_right_up = offset_a5 + arctan2(-radius_q6_right, -r23_from_q1_right)/DEGREE  # A5: its turn
+        axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down  # A5: its turn
         axis_a6_right_up = offset_a6 + arctan2(sin_q6_right_up, cos_q6_right_up)/DEGREE  # A6: its turn
         axis_a2_left_down_up = offset_a2 + arctan2(sin_q2_left_down_up, cos_q2_left_down_up)/DEGREE  # A2: its turn
-        axis_a3_left_down_up = offset_a3 + arctan2(-sin_q3_left_up_up, cos_q3_left_up)/DEGREE  # A3: its turn
+        axis_a3_left_down_up = offset_a3_times_2 - axis_a3_left_up_up  # A3: its turn
         cos_q23_left_down_up = cos_q2_left_down_up*cos_q3_left_up + sin_q2_left_down_up*sin_q3_left_up_up
         sin_q23_left_down_up = cos_q3_left_up*sin_q2_left_down_up - cos_q2_left_down_up*sin_q3_left_up_up
         # q4: what the sum q234 leaves
@@ -1927,7 +1943,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         axis_a4_left_down_up = offset_a4 + arctan2(sin_q4_left_down_up, cos_q4_left_down_up)/DEGREE  # A4: its turn
         axis_a2_right_down_up = offset_a2 + arctan2(sin_q2_right_down_up, cos_q2_right_down_up)/DEGREE  # A2: its turn
-        axis_a3_right_down_up = offset_a3 + arctan2(-sin_q3_right_up_up, cos_q3_right_up)/DEGREE  # A3: its turn
+        axis_a3_right_down_up = offset_a3_times_2 - axis_a3_right_up_up  # A3: its turn
         cos_q23_right_down_up = cos_q2_right_down_up*cos_q3_right_up + sin_q2_right_down_up*sin_q3_right_up_up
         sin_q23_right_down_up = cos_q3_right_up*sin_q2_right_down_up - cos_q2_right_down_up*sin_q3_right_up_up
         # q4: what the sum q234 leaves
@@ -2016,12 +2032,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
+        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return None
-        if distance_q1 > 1e-11*machine_scale:
+        if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d4/divisor_q1
             sin_swing_q1 = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_shoulder
             cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
@@ -2062,7 +2078,8 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
-            wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
+            wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here
+            - a2_squared_plus_a3_squared
         )
         if abs(value_q6_of_q3) <= size_q6_of_q3:
             cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
@@ -2075,7 +2092,7 @@ def unrolled(k: Constants) -> Unrolled:
                 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )
             swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-            if swing_q6_of_q3 > 1e-12*size_q6_of_q3:
+            if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
                 level_q6_of_q3 = (
                     value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
                 )
@@ -2138,13 +2155,15 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3 = (a3 + reach - a2)*(a2 + a3 + reach)*(a2 + a3 - reach)*(a2 + reach - a3)/(scale_q3*scale_q3)
+        sine_square_q3 = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+        )
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
-        cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             # q2: linear pair in the x_from_q1 and y_from_q1 equations

@@ -97,16 +97,26 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_upright = offset_a4 + arctan2(sin_a4_upright, cos_a4_upright + 0.0)/DEGREE  # A4: its turn
         if not -180.000000001 <= axis_a4_upright - open_a4 < 179.999999999:
             axis_a4_upright = nearest_period(axis_a4_upright, open_a4)
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
-        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4 + 0.0)/DEGREE  # A5: its turn
-        if not -180.000000001 <= axis_a5_upright - open_a5 < 179.999999999:
-            axis_a5_upright = nearest_period(axis_a5_upright, open_a5)
         r11_from_a4_upright = r11*cos_a4_upright - r31*sin_a4_upright
         r12_from_a4_upright = r12*cos_a4_upright - r32*sin_a4_upright
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         axis_a6_upright = offset_a6 + arctan2(-r12_from_a4_upright, r11_from_a4_upright + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_upright - open_a6 < 179.999999999:
             axis_a6_upright = nearest_period(axis_a6_upright, open_a6)
+        if radius_a4 > 1e-11:
+            direction_of_axis_a4_flipped = 180.0 + axis_a4_upright
+            direction_of_axis_a6_flipped = 180.0 + axis_a6_upright
+        else:
+            direction_of_axis_a4_flipped = offset_a4 + arctan2(sin_a4_flipped + 0.0, cos_a4_flipped + 0.0)/DEGREE
+            r11_from_a4_flipped = r11*cos_a4_flipped - r31*sin_a4_flipped
+            r12_from_a4_flipped = r12*cos_a4_flipped - r32*sin_a4_flipped
+            direction_of_axis_a6_flipped = (
+                offset_a6 + arctan2(-r12_from_a4_flipped + 0.0, r11_from_a4_flipped + 0.0)/DEGREE
+            )
+        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
+        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4 + 0.0)/DEGREE  # A5: its turn
+        if not -180.000000001 <= axis_a5_upright - open_a5 < 179.999999999:
+            axis_a5_upright = nearest_period(axis_a5_upright, open_a5)
         # limits of A4, limits of A5, limits of A6
         refusal_upright = (
             0.0
@@ -115,15 +125,13 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_a5_upright <= highest_a5) and (axis_a6_upright <= highest_a6)
             else 3.0
         )
-        axis_a4_flipped = offset_a4 + arctan2(sin_a4_flipped, cos_a4_flipped + 0.0)/DEGREE  # A4: its turn
+        axis_a4_flipped = direction_of_axis_a4_flipped  # A4: its turn
         if not -180.000000001 <= axis_a4_flipped - open_a4 < 179.999999999:
             axis_a4_flipped = nearest_period(axis_a4_flipped, open_a4)
         axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_flipped - open_a5 < 179.999999999:
             axis_a5_flipped = nearest_period(axis_a5_flipped, open_a5)
-        r11_from_a4_flipped = r11*cos_a4_flipped - r31*sin_a4_flipped
-        r12_from_a4_flipped = r12*cos_a4_flipped - r32*sin_a4_flipped
-        axis_a6_flipped = offset_a6 + arctan2(-r12_from_a4_flipped, r11_from_a4_flipped + 0.0)/DEGREE  # A6: its turn
+        axis_a6_flipped = direction_of_axis_a6_flipped  # A6: its turn
         if not -180.000000001 <= axis_a6_flipped - open_a6 < 179.999999999:
             axis_a6_flipped = nearest_period(axis_a6_flipped, open_a6)
         # limits of A4, limits of A5, limits of A6
@@ -163,25 +171,29 @@ def unrolled(k: Constants) -> Unrolled:
             sin_a4_upright = sin(free_a4)
             cos_a4_flipped = cos_a4_upright  # its reference where it is free
             sin_a4_flipped = sin_a4_upright
+        axis_a4_upright = offset_a4 + arctan2(sin_a4_upright, cos_a4_upright)/DEGREE  # A4: its turn
+        r11_from_a4_upright = r11*cos_a4_upright - r31*sin_a4_upright
+        r12_from_a4_upright = r12*cos_a4_upright - r32*sin_a4_upright
+        axis_a6_upright = offset_a6 + arctan2(-r12_from_a4_upright, r11_from_a4_upright)/DEGREE  # A6: its turn
+        if radius_a4 > 1e-11:
+            direction_of_axis_a4_flipped = 180.0 + axis_a4_upright
+            direction_of_axis_a6_flipped = 180.0 + axis_a6_upright
+        else:
+            direction_of_axis_a4_flipped = offset_a4 + arctan2(sin_a4_flipped, cos_a4_flipped)/DEGREE
+            r11_from_a4_flipped = r11*cos_a4_flipped - r31*sin_a4_flipped
+            r12_from_a4_flipped = r12*cos_a4_flipped - r32*sin_a4_flipped
+            direction_of_axis_a6_flipped = offset_a6 + arctan2(-r12_from_a4_flipped, r11_from_a4_flipped)/DEGREE
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        axis_a4_upright = offset_a4 + arctan2(sin_a4_upright, cos_a4_upright)/DEGREE  # A4: its turn
         axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4)/DEGREE  # A5: its turn
-        r11_from_a4_upright = r11*cos_a4_upright - r31*sin_a4_upright
-        r12_from_a4_upright = r12*cos_a4_upright - r32*sin_a4_upright
-        axis_a6_upright = offset_a6 + arctan2(-r12_from_a4_upright, r11_from_a4_upright)/DEGREE  # A6: its turn
-        axis_a4_flipped = offset_a4 + arctan2(sin_a4_flipped, cos_a4_flipped)/DEGREE  # A4: its turn
         axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4)/DEGREE  # A5: its turn
-        r11_from_a4_flipped = r11*cos_a4_flipped - r31*sin_a4_flipped
-        r12_from_a4_flipped = r12*cos_a4_flipped - r32*sin_a4_flipped
-        axis_a6_flipped = offset_a6 + arctan2(-r12_from_a4_flipped, r11_from_a4_flipped)/DEGREE  # A6: its turn
         return (
             (axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright),
-            (axis_a1, axis_a2, axis_a3, axis_a4_flipped, axis_a5_flipped, axis_a6_flipped),
+            (axis_a1, axis_a2, axis_a3, direction_of_axis_a4_flipped, axis_a5_flipped, direction_of_axis_a6_flipped),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:

@@ -55,6 +55,14 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     swing_scale_q3 = k.swing_scale_q3
+    machine_scale_times_free_angle = 1e-11*machine_scale
+    a2_squared_plus_effective_q3_squared = a2*a2 + effective_q3*effective_q3
+    a2_plus_effective_q3 = a2 + effective_q3
+    a2_minus_effective_q3 = a2 - effective_q3
+    swing_scale_q3_squared = swing_scale_q3*swing_scale_q3
+    a3_by_effective_q3 = a3/effective_q3
+    d4_by_effective_q3 = d4/effective_q3
+    offset_a5_times_2 = 2.0*offset_a5
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -83,12 +91,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
+        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(3.0,)
-        if distance_q1 > 1e-11*machine_scale:
+        if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d3/divisor_q1
             sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             # its reference where it is free
@@ -106,18 +114,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
         reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
-        cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        cos_swing_q3_front = (reach_front*reach_front - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         # kept as a product
         sine_square_q3_front = (
-            (effective_q3 + reach_front - a2)*(a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
-            *(a2 + reach_front - effective_q3)/(swing_scale_q3*swing_scale_q3)
+            (reach_front - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_front)
+            *(a2_plus_effective_q3 + reach_front)*(a2_plus_effective_q3 - reach_front)/swing_scale_q3_squared
         )
         sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
-        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 - d4*sin_swing_q3_front_down/effective_q3
-        sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3 + d4*cos_swing_q3_front/effective_q3
-        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3 + d4*sin_swing_q3_front_down/effective_q3
-        sin_q3_front_up = d4*cos_swing_q3_front/effective_q3 - a3*sin_swing_q3_front_down/effective_q3
-        if reach_front > 1e-11*machine_scale:
+        cos_q3_front_down = a3_by_effective_q3*cos_swing_q3_front - d4_by_effective_q3*sin_swing_q3_front_down
+        sin_q3_front_down = a3_by_effective_q3*sin_swing_q3_front_down + d4_by_effective_q3*cos_swing_q3_front
+        cos_q3_front_up = a3_by_effective_q3*cos_swing_q3_front + d4_by_effective_q3*sin_swing_q3_front_down
+        sin_q3_front_up = d4_by_effective_q3*cos_swing_q3_front - a3_by_effective_q3*sin_swing_q3_front_down
+        if reach_front > machine_scale_times_free_angle:
             arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
             arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -125,11 +133,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_front_down = (
                 arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
             )
-            length_q2_front_down = (
-                sqrt(across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down)
-                if across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0
-                else 1.0
+            length_q2_squared_front_down = (
+                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
             )
+            length_q2_front_down = sqrt(length_q2_squared_front_down) if length_q2_squared_front_down > 0.0 else 1.0
             cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
             sin_q2_front_down = across_q2_front_down/length_q2_front_down
             arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
@@ -137,11 +144,8 @@ def unrolled(k: Constants) -> Unrolled:
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
             across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_front_up = (
-                sqrt(across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up)
-                if across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0
-                else 1.0
-            )
+            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
+            length_q2_front_up = sqrt(length_q2_squared_front_up) if length_q2_squared_front_up > 0.0 else 1.0
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
@@ -191,12 +195,6 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_front_down_down = offset_a4 + arctan2(sin_q4_front_down_down, cos_q4_front_down_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_front_down_down - open_a4 < 179.999999999:
             axis_a4_front_down_down = nearest_period(axis_a4_front_down_down, open_a4)
-        r23_from_q123_front_down = -r13_from_q1_front*cos_q23_front_down - r33*sin_q23_front_down
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
-        # A5: its turn
-        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4_front_down, -r23_from_q123_front_down + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a5_front_down_down - open_a5 < 179.999999999:
-            axis_a5_front_down_down = nearest_period(axis_a5_front_down_down, open_a5)
         r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
         r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
         r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down
@@ -216,27 +214,26 @@ def unrolled(k: Constants) -> Unrolled:
         )
         if not -180.000000001 <= axis_a6_front_down_down - open_a6 < 179.999999999:
             axis_a6_front_down_down = nearest_period(axis_a6_front_down_down, open_a6)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down + 0.0)/DEGREE  # A2: its turn
-        if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
-            axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down + 0.0)/DEGREE  # A3: its turn
-        if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
-            axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front + 0.0)/DEGREE  # A1: its turn
-        if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
-            axis_a1_front = nearest_period(axis_a1_front, open_a1)
+        if radius_q4_front_down > 1e-11:
+            direction_of_axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
+            direction_of_axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
+        else:
+            direction_of_axis_a4_front_down_up = (
+                offset_a4 + arctan2(sin_q4_front_down_up + 0.0, cos_q4_front_down_up + 0.0)/DEGREE
+            )
+            r21_from_q1234_front_down_up = (
+                -r21_from_q1_front*cos_q4_front_down_up - r11_from_q123_front_down*sin_q4_front_down_up
+            )
+            r22_from_q1234_front_down_up = (
+                -r22_from_q1_front*cos_q4_front_down_up - r12_from_q123_front_down*sin_q4_front_down_up
+            )
+            direction_of_axis_a6_front_down_up = (
+                offset_a6 + arctan2(r21_from_q1234_front_down_up + 0.0, r22_from_q1234_front_down_up + 0.0)/DEGREE
+            )
         # A4: its turn
         axis_a4_front_up_down = offset_a4 + arctan2(sin_q4_front_up_down, cos_q4_front_up_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_front_up_down - open_a4 < 179.999999999:
             axis_a4_front_up_down = nearest_period(axis_a4_front_up_down, open_a4)
-        r23_from_q123_front_up = -r13_from_q1_front*cos_q23_front_up - r33*sin_q23_front_up
-        # A5: its turn
-        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4_front_up, -r23_from_q123_front_up + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a5_front_up_down - open_a5 < 179.999999999:
-            axis_a5_front_up_down = nearest_period(axis_a5_front_up_down, open_a5)
         r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
         r21_from_q1234_front_up_down = (
             -r21_from_q1_front*cos_q4_front_up_down - r11_from_q123_front_up*sin_q4_front_up_down
@@ -251,43 +248,63 @@ def unrolled(k: Constants) -> Unrolled:
         )
         if not -180.000000001 <= axis_a6_front_up_down - open_a6 < 179.999999999:
             axis_a6_front_up_down = nearest_period(axis_a6_front_up_down, open_a6)
+        if radius_q4_front_up > 1e-11:
+            direction_of_axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
+            direction_of_axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
+        else:
+            direction_of_axis_a4_front_up_up = (
+                offset_a4 + arctan2(sin_q4_front_up_up + 0.0, cos_q4_front_up_up + 0.0)/DEGREE
+            )
+            r21_from_q1234_front_up_up = -r21_from_q1_front*cos_q4_front_up_up - r11_from_q123_front_up*sin_q4_front_up_up
+            r22_from_q1234_front_up_up = -r22_from_q1_front*cos_q4_front_up_up - r12_from_q123_front_up*sin_q4_front_up_up
+            direction_of_axis_a6_front_up_up = (
+                offset_a6 + arctan2(r21_from_q1234_front_up_up + 0.0, r22_from_q1234_front_up_up + 0.0)/DEGREE
+            )
+        r23_from_q123_front_down = -r13_from_q1_front*cos_q23_front_down - r33*sin_q23_front_down
+        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
+        # A5: its turn
+        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4_front_down, -r23_from_q123_front_down + 0.0)/DEGREE
+        if not -180.000000001 <= axis_a5_front_down_down - open_a5 < 179.999999999:
+            axis_a5_front_down_down = nearest_period(axis_a5_front_down_down, open_a5)
+        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
+            axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
+        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
+            axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
+        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
+            axis_a1_front = nearest_period(axis_a1_front, open_a1)
+        r23_from_q123_front_up = -r13_from_q1_front*cos_q23_front_up - r33*sin_q23_front_up
+        # A5: its turn
+        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4_front_up, -r23_from_q123_front_up + 0.0)/DEGREE
+        if not -180.000000001 <= axis_a5_front_up_down - open_a5 < 179.999999999:
+            axis_a5_front_up_down = nearest_period(axis_a5_front_up_down, open_a5)
         axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
             axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
         axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
-        # A4: its turn
-        axis_a4_front_down_up = offset_a4 + arctan2(sin_q4_front_down_up, cos_q4_front_down_up + 0.0)/DEGREE
+        axis_a4_front_down_up = direction_of_axis_a4_front_down_up  # A4: its turn
         if not -180.000000001 <= axis_a4_front_down_up - open_a4 < 179.999999999:
             axis_a4_front_down_up = nearest_period(axis_a4_front_down_up, open_a4)
-        # A5: its turn
-        axis_a5_front_down_up = offset_a5 + arctan2(-radius_q4_front_down, -r23_from_q123_front_down + 0.0)/DEGREE
+        axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
         if not -180.000000001 <= axis_a5_front_down_up - open_a5 < 179.999999999:
             axis_a5_front_down_up = nearest_period(axis_a5_front_down_up, open_a5)
-        r21_from_q1234_front_down_up = (
-            -r21_from_q1_front*cos_q4_front_down_up - r11_from_q123_front_down*sin_q4_front_down_up
-        )
-        r22_from_q1234_front_down_up = (
-            -r22_from_q1_front*cos_q4_front_down_up - r12_from_q123_front_down*sin_q4_front_down_up
-        )
-        # A6: its turn
-        axis_a6_front_down_up = (
-            offset_a6 + arctan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up + 0.0)/DEGREE
-        )
+        axis_a6_front_down_up = direction_of_axis_a6_front_down_up  # A6: its turn
         if not -180.000000001 <= axis_a6_front_down_up - open_a6 < 179.999999999:
             axis_a6_front_down_up = nearest_period(axis_a6_front_down_up, open_a6)
-        axis_a4_front_up_up = offset_a4 + arctan2(sin_q4_front_up_up, cos_q4_front_up_up + 0.0)/DEGREE  # A4: its turn
+        axis_a4_front_up_up = direction_of_axis_a4_front_up_up  # A4: its turn
         if not -180.000000001 <= axis_a4_front_up_up - open_a4 < 179.999999999:
             axis_a4_front_up_up = nearest_period(axis_a4_front_up_up, open_a4)
-        # A5: its turn
-        axis_a5_front_up_up = offset_a5 + arctan2(-radius_q4_front_up, -r23_from_q123_front_up + 0.0)/DEGREE
+        axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
         if not -180.000000001 <= axis_a5_front_up_up - open_a5 < 179.999999999:
             axis_a5_front_up_up = nearest_period(axis_a5_front_up_up, open_a5)
-        r21_from_q1234_front_up_up = -r21_from_q1_front*cos_q4_front_up_up - r11_from_q123_front_up*sin_q4_front_up_up
-        r22_from_q1234_front_up_up = -r22_from_q1_front*cos_q4_front_up_up - r12_from_q123_front_up*sin_q4_front_up_up
-        # A6: its turn
-        axis_a6_front_up_up = offset_a6 + arctan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up + 0.0)/DEGREE
+        axis_a6_front_up_up = direction_of_axis_a6_front_up_up  # A6: its turn
         if not -180.000000001 <= axis_a6_front_up_up - open_a6 < 179.999999999:
             axis_a6_front_up_up = nearest_period(axis_a6_front_up_up, open_a6)
         if sine_square_q3_front >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
@@ -338,28 +355,25 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_front_up_up = 3.0  # limits of A4, limits of A5, limits of A6
         wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
         reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
-        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        cos_swing_q3_back = (reach_back*reach_back - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         # kept as a product
         sine_square_q3_back = (
-            (effective_q3 + reach_back - a2)*(a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
-            *(a2 + reach_back - effective_q3)/(swing_scale_q3*swing_scale_q3)
+            (reach_back - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_back)
+            *(a2_plus_effective_q3 + reach_back)*(a2_plus_effective_q3 - reach_back)/swing_scale_q3_squared
         )
         sin_swing_q3_back_down = -(sqrt(sine_square_q3_back) if sine_square_q3_back > 0.0 else 0.0)
-        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3 - d4*sin_swing_q3_back_down/effective_q3
-        sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3 + d4*cos_swing_q3_back/effective_q3
-        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3 + d4*sin_swing_q3_back_down/effective_q3
-        sin_q3_back_up = d4*cos_swing_q3_back/effective_q3 - a3*sin_swing_q3_back_down/effective_q3
-        if reach_back > 1e-11*machine_scale:
+        cos_q3_back_down = a3_by_effective_q3*cos_swing_q3_back - d4_by_effective_q3*sin_swing_q3_back_down
+        sin_q3_back_down = a3_by_effective_q3*sin_swing_q3_back_down + d4_by_effective_q3*cos_swing_q3_back
+        cos_q3_back_up = a3_by_effective_q3*cos_swing_q3_back + d4_by_effective_q3*sin_swing_q3_back_down
+        sin_q3_back_up = d4_by_effective_q3*cos_swing_q3_back - a3_by_effective_q3*sin_swing_q3_back_down
+        if reach_back > machine_scale_times_free_angle:
             arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
             arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
             across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_back_down = (
-                sqrt(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down)
-                if across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0
-                else 1.0
-            )
+            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
+            length_q2_back_down = sqrt(length_q2_squared_back_down) if length_q2_squared_back_down > 0.0 else 1.0
             cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
             sin_q2_back_down = across_q2_back_down/length_q2_back_down
             arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
@@ -367,11 +381,8 @@ def unrolled(k: Constants) -> Unrolled:
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
             across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_back_up = (
-                sqrt(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up)
-                if across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0
-                else 1.0
-            )
+            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
+            length_q2_back_up = sqrt(length_q2_squared_back_up) if length_q2_squared_back_up > 0.0 else 1.0
             cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
             sin_q2_back_up = across_q2_back_up/length_q2_back_up
         else:
@@ -420,11 +431,6 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_back_down_down = offset_a4 + arctan2(sin_q4_back_down_down, cos_q4_back_down_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_back_down_down - open_a4 < 179.999999999:
             axis_a4_back_down_down = nearest_period(axis_a4_back_down_down, open_a4)
-        r23_from_q123_back_down = -r13_from_q1_back*cos_q23_back_down - r33*sin_q23_back_down
-        # A5: its turn
-        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4_back_down, -r23_from_q123_back_down + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a5_back_down_down - open_a5 < 179.999999999:
-            axis_a5_back_down_down = nearest_period(axis_a5_back_down_down, open_a5)
         r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
         r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
@@ -443,24 +449,26 @@ def unrolled(k: Constants) -> Unrolled:
         )
         if not -180.000000001 <= axis_a6_back_down_down - open_a6 < 179.999999999:
             axis_a6_back_down_down = nearest_period(axis_a6_back_down_down, open_a6)
-        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down + 0.0)/DEGREE  # A2: its turn
-        if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
-            axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
-        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down + 0.0)/DEGREE  # A3: its turn
-        if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
-            axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back + 0.0)/DEGREE  # A1: its turn
-        if not -180.000000001 <= axis_a1_back - open_a1 < 179.999999999:
-            axis_a1_back = nearest_period(axis_a1_back, open_a1)
+        if radius_q4_back_down > 1e-11:
+            direction_of_axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
+            direction_of_axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
+        else:
+            direction_of_axis_a4_back_down_up = (
+                offset_a4 + arctan2(sin_q4_back_down_up + 0.0, cos_q4_back_down_up + 0.0)/DEGREE
+            )
+            r21_from_q1234_back_down_up = (
+                -r21_from_q1_back*cos_q4_back_down_up - r11_from_q123_back_down*sin_q4_back_down_up
+            )
+            r22_from_q1234_back_down_up = (
+                -r22_from_q1_back*cos_q4_back_down_up - r12_from_q123_back_down*sin_q4_back_down_up
+            )
+            direction_of_axis_a6_back_down_up = (
+                offset_a6 + arctan2(r21_from_q1234_back_down_up + 0.0, r22_from_q1234_back_down_up + 0.0)/DEGREE
+            )
         # A4: its turn
         axis_a4_back_up_down = offset_a4 + arctan2(sin_q4_back_up_down, cos_q4_back_up_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_back_up_down - open_a4 < 179.999999999:
             axis_a4_back_up_down = nearest_period(axis_a4_back_up_down, open_a4)
-        r23_from_q123_back_up = -r13_from_q1_back*cos_q23_back_up - r33*sin_q23_back_up
-        # A5: its turn
-        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4_back_up, -r23_from_q123_back_up + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a5_back_up_down - open_a5 < 179.999999999:
-            axis_a5_back_up_down = nearest_period(axis_a5_back_up_down, open_a5)
         r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
         r21_from_q1234_back_up_down = (
             -r21_from_q1_back*cos_q4_back_up_down - r11_from_q123_back_up*sin_q4_back_up_down
@@ -475,43 +483,57 @@ def unrolled(k: Constants) -> Unrolled:
         )
         if not -180.000000001 <= axis_a6_back_up_down - open_a6 < 179.999999999:
             axis_a6_back_up_down = nearest_period(axis_a6_back_up_down, open_a6)
+        if radius_q4_back_up > 1e-11:
+            direction_of_axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
+            direction_of_axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
+        else:
+            direction_of_axis_a4_back_up_up = offset_a4 + arctan2(sin_q4_back_up_up + 0.0, cos_q4_back_up_up + 0.0)/DEGREE
+            r21_from_q1234_back_up_up = -r21_from_q1_back*cos_q4_back_up_up - r11_from_q123_back_up*sin_q4_back_up_up
+            r22_from_q1234_back_up_up = -r22_from_q1_back*cos_q4_back_up_up - r12_from_q123_back_up*sin_q4_back_up_up
+            direction_of_axis_a6_back_up_up = (
+                offset_a6 + arctan2(r21_from_q1234_back_up_up + 0.0, r22_from_q1234_back_up_up + 0.0)/DEGREE
+            )
+        r23_from_q123_back_down = -r13_from_q1_back*cos_q23_back_down - r33*sin_q23_back_down
+        # A5: its turn
+        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4_back_down, -r23_from_q123_back_down + 0.0)/DEGREE
+        if not -180.000000001 <= axis_a5_back_down_down - open_a5 < 179.999999999:
+            axis_a5_back_down_down = nearest_period(axis_a5_back_down_down, open_a5)
+        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
+            axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
+        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
+            axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
+        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1_back - open_a1 < 179.999999999:
+            axis_a1_back = nearest_period(axis_a1_back, open_a1)
+        r23_from_q123_back_up = -r13_from_q1_back*cos_q23_back_up - r33*sin_q23_back_up
+        # A5: its turn
+        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4_back_up, -r23_from_q123_back_up + 0.0)/DEGREE
+        if not -180.000000001 <= axis_a5_back_up_down - open_a5 < 179.999999999:
+            axis_a5_back_up_down = nearest_period(axis_a5_back_up_down, open_a5)
         axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_up - open_a2 < 179.999999999:
             axis_a2_back_up = nearest_period(axis_a2_back_up, open_a2)
         axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
-        # A4: its turn
-        axis_a4_back_down_up = offset_a4 + arctan2(sin_q4_back_down_up, cos_q4_back_down_up + 0.0)/DEGREE
+        axis_a4_back_down_up = direction_of_axis_a4_back_down_up  # A4: its turn
         if not -180.000000001 <= axis_a4_back_down_up - open_a4 < 179.999999999:
             axis_a4_back_down_up = nearest_period(axis_a4_back_down_up, open_a4)
-        # A5: its turn
-        axis_a5_back_down_up = offset_a5 + arctan2(-radius_q4_back_down, -r23_from_q123_back_down + 0.0)/DEGREE
+        axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
         if not -180.000000001 <= axis_a5_back_down_up - open_a5 < 179.999999999:
             axis_a5_back_down_up = nearest_period(axis_a5_back_down_up, open_a5)
-        r21_from_q1234_back_down_up = (
-            -r21_from_q1_back*cos_q4_back_down_up - r11_from_q123_back_down*sin_q4_back_down_up
-        )
-        r22_from_q1234_back_down_up = (
-            -r22_from_q1_back*cos_q4_back_down_up - r12_from_q123_back_down*sin_q4_back_down_up
-        )
-        # A6: its turn
-        axis_a6_back_down_up = (
-            offset_a6 + arctan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up + 0.0)/DEGREE
-        )
+        axis_a6_back_down_up = direction_of_axis_a6_back_down_up  # A6: its turn
         if not -180.000000001 <= axis_a6_back_down_up - open_a6 < 179.999999999:
             axis_a6_back_down_up = nearest_period(axis_a6_back_down_up, open_a6)
-        axis_a4_back_up_up = offset_a4 + arctan2(sin_q4_back_up_up, cos_q4_back_up_up + 0.0)/DEGREE  # A4: its turn
+        axis_a4_back_up_up = direction_of_axis_a4_back_up_up  # A4: its turn
         if not -180.000000001 <= axis_a4_back_up_up - open_a4 < 179.999999999:
             axis_a4_back_up_up = nearest_period(axis_a4_back_up_up, open_a4)
-        # A5: its turn
-        axis_a5_back_up_up = offset_a5 + arctan2(-radius_q4_back_up, -r23_from_q123_back_up + 0.0)/DEGREE
+        axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: its turn
         if not -180.000000001 <= axis_a5_back_up_up - open_a5 < 179.999999999:
             axis_a5_back_up_up = nearest_period(axis_a5_back_up_up, open_a5)
-        r21_from_q1234_back_up_up = -r21_from_q1_back*cos_q4_back_up_up - r11_from_q123_back_up*sin_q4_back_up_up
-        r22_from_q1234_back_up_up = -r22_from_q1_back*cos_q4_back_up_up - r12_from_q123_back_up*sin_q4_back_up_up
-        # A6: its turn
-        axis_a6_back_up_up = offset_a6 + arctan2(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up + 0.0)/DEGREE
+        axis_a6_back_up_up = direction_of_axis_a6_back_up_up  # A6: its turn
         if not -180.000000001 <= axis_a6_back_up_up - open_a6 < 179.999999999:
             axis_a6_back_up_up = nearest_period(axis_a6_back_up_up, open_a6)
         if sine_square_q3_back >= -1e-12 and axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1:
@@ -635,12 +657,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
+        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(None,)
-        if distance_q1 > 1e-11*machine_scale:
+        if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d3/divisor_q1
             sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             # its reference where it is free
@@ -660,16 +682,16 @@ def unrolled(k: Constants) -> Unrolled:
         reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3_front = (
-            (effective_q3 + reach_front - a2)*(a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
-            *(a2 + reach_front - effective_q3)/(swing_scale_q3*swing_scale_q3)
+            (reach_front - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_front)
+            *(a2_plus_effective_q3 + reach_front)*(a2_plus_effective_q3 - reach_front)/swing_scale_q3_squared
         )
-        cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        cos_swing_q3_front = (reach_front*reach_front - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
-        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 - d4*sin_swing_q3_front_down/effective_q3
-        sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3 + d4*cos_swing_q3_front/effective_q3
-        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3 + d4*sin_swing_q3_front_down/effective_q3
-        sin_q3_front_up = d4*cos_swing_q3_front/effective_q3 - a3*sin_swing_q3_front_down/effective_q3
-        if reach_front > 1e-11*machine_scale:
+        cos_q3_front_down = a3_by_effective_q3*cos_swing_q3_front - d4_by_effective_q3*sin_swing_q3_front_down
+        sin_q3_front_down = a3_by_effective_q3*sin_swing_q3_front_down + d4_by_effective_q3*cos_swing_q3_front
+        cos_q3_front_up = a3_by_effective_q3*cos_swing_q3_front + d4_by_effective_q3*sin_swing_q3_front_down
+        sin_q3_front_up = d4_by_effective_q3*cos_swing_q3_front - a3_by_effective_q3*sin_swing_q3_front_down
+        if reach_front > machine_scale_times_free_angle:
             arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
             arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -677,11 +699,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_front_down = (
                 arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
             )
-            length_q2_front_down = (
-                sqrt(across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down)
-                if across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0
-                else 1.0
+            length_q2_squared_front_down = (
+                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
             )
+            length_q2_front_down = sqrt(length_q2_squared_front_down) if length_q2_squared_front_down > 0.0 else 1.0
             cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
             sin_q2_front_down = across_q2_front_down/length_q2_front_down
             arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
@@ -689,11 +710,8 @@ def unrolled(k: Constants) -> Unrolled:
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
             across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_front_up = (
-                sqrt(across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up)
-                if across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0
-                else 1.0
-            )
+            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
+            length_q2_front_up = sqrt(length_q2_squared_front_up) if length_q2_squared_front_up > 0.0 else 1.0
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
@@ -726,26 +744,23 @@ def unrolled(k: Constants) -> Unrolled:
         reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3_back = (
-            (effective_q3 + reach_back - a2)*(a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
-            *(a2 + reach_back - effective_q3)/(swing_scale_q3*swing_scale_q3)
+            (reach_back - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_back)
+            *(a2_plus_effective_q3 + reach_back)*(a2_plus_effective_q3 - reach_back)/swing_scale_q3_squared
         )
-        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        cos_swing_q3_back = (reach_back*reach_back - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         sin_swing_q3_back_down = -(sqrt(sine_square_q3_back) if sine_square_q3_back > 0.0 else 0.0)
-        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3 - d4*sin_swing_q3_back_down/effective_q3
-        sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3 + d4*cos_swing_q3_back/effective_q3
-        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3 + d4*sin_swing_q3_back_down/effective_q3
-        sin_q3_back_up = d4*cos_swing_q3_back/effective_q3 - a3*sin_swing_q3_back_down/effective_q3
-        if reach_back > 1e-11*machine_scale:
+        cos_q3_back_down = a3_by_effective_q3*cos_swing_q3_back - d4_by_effective_q3*sin_swing_q3_back_down
+        sin_q3_back_down = a3_by_effective_q3*sin_swing_q3_back_down + d4_by_effective_q3*cos_swing_q3_back
+        cos_q3_back_up = a3_by_effective_q3*cos_swing_q3_back + d4_by_effective_q3*sin_swing_q3_back_down
+        sin_q3_back_up = d4_by_effective_q3*cos_swing_q3_back - a3_by_effective_q3*sin_swing_q3_back_down
+        if reach_back > machine_scale_times_free_angle:
             arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
             arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
             across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_back_down = (
-                sqrt(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down)
-                if across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0
-                else 1.0
-            )
+            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
+            length_q2_back_down = sqrt(length_q2_squared_back_down) if length_q2_squared_back_down > 0.0 else 1.0
             cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
             sin_q2_back_down = across_q2_back_down/length_q2_back_down
             arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
@@ -753,11 +768,8 @@ def unrolled(k: Constants) -> Unrolled:
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
             across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_back_up = (
-                sqrt(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up)
-                if across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0
-                else 1.0
-            )
+            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
+            length_q2_back_up = sqrt(length_q2_squared_back_up) if length_q2_squared_back_up > 0.0 else 1.0
             cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
             sin_q2_back_up = across_q2_back_up/length_q2_back_up
         else:
@@ -818,15 +830,8 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q4_back_up_down = sin(free_a4)
             cos_q4_back_up_up = cos_q4_back_up_down  # its reference where it is free
             sin_q4_back_up_up = sin_q4_back_up_down
-        refusal_front = 0.0 if sine_square_q3_front >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)/DEGREE  # A1: its turn
-        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down)/DEGREE  # A2: its turn
-        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down)/DEGREE  # A3: its turn
         # A4: its turn
         axis_a4_front_down_down = offset_a4 + arctan2(sin_q4_front_down_down, cos_q4_front_down_down)/DEGREE
-        r23_from_q123_front_down = -r13_from_q1_front*cos_q23_front_down - r33*sin_q23_front_down
-        # A5: its turn
-        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4_front_down, -r23_from_q123_front_down)/DEGREE
         r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
         r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
         r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down
@@ -843,15 +848,22 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_front_down_down = (
             offset_a6 + arctan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down)/DEGREE
         )
-        refusal_back = 0.0 if sine_square_q3_back >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)/DEGREE  # A1: its turn
-        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down)/DEGREE  # A2: its turn
-        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down)/DEGREE  # A3: its turn
+        if radius_q4_front_down > 1e-11:
+            direction_of_axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
+            direction_of_axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
+        else:
+            direction_of_axis_a4_front_down_up = offset_a4 + arctan2(sin_q4_front_down_up, cos_q4_front_down_up)/DEGREE
+            r21_from_q1234_front_down_up = (
+                -r21_from_q1_front*cos_q4_front_down_up - r11_from_q123_front_down*sin_q4_front_down_up
+            )
+            r22_from_q1234_front_down_up = (
+                -r22_from_q1_front*cos_q4_front_down_up - r12_from_q123_front_down*sin_q4_front_down_up
+            )
+            direction_of_axis_a6_front_down_up = (
+                offset_a6 + arctan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up)/DEGREE
+            )
         # A4: its turn
         axis_a4_back_down_down = offset_a4 + arctan2(sin_q4_back_down_down, cos_q4_back_down_down)/DEGREE
-        r23_from_q123_back_down = -r13_from_q1_back*cos_q23_back_down - r33*sin_q23_back_down
-        # A5: its turn
-        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4_back_down, -r23_from_q123_back_down)/DEGREE
         r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
         r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
@@ -868,12 +880,21 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_back_down_down = (
             offset_a6 + arctan2(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down)/DEGREE
         )
-        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up)/DEGREE  # A2: its turn
-        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up)/DEGREE  # A3: its turn
+        if radius_q4_back_down > 1e-11:
+            direction_of_axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
+            direction_of_axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
+        else:
+            direction_of_axis_a4_back_down_up = offset_a4 + arctan2(sin_q4_back_down_up, cos_q4_back_down_up)/DEGREE
+            r21_from_q1234_back_down_up = (
+                -r21_from_q1_back*cos_q4_back_down_up - r11_from_q123_back_down*sin_q4_back_down_up
+            )
+            r22_from_q1234_back_down_up = (
+                -r22_from_q1_back*cos_q4_back_down_up - r12_from_q123_back_down*sin_q4_back_down_up
+            )
+            direction_of_axis_a6_back_down_up = (
+                offset_a6 + arctan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up)/DEGREE
+            )
         axis_a4_front_up_down = offset_a4 + arctan2(sin_q4_front_up_down, cos_q4_front_up_down)/DEGREE  # A4: its turn
-        r23_from_q123_front_up = -r13_from_q1_front*cos_q23_front_up - r33*sin_q23_front_up
-        # A5: its turn
-        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4_front_up, -r23_from_q123_front_up)/DEGREE
         r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
         r21_from_q1234_front_up_down = (
             -r21_from_q1_front*cos_q4_front_up_down - r11_from_q123_front_up*sin_q4_front_up_down
@@ -884,11 +905,17 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # A6: its turn
         axis_a6_front_up_down = offset_a6 + arctan2(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down)/DEGREE
-        axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up)/DEGREE  # A2: its turn
-        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up)/DEGREE  # A3: its turn
+        if radius_q4_front_up > 1e-11:
+            direction_of_axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
+            direction_of_axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
+        else:
+            direction_of_axis_a4_front_up_up = offset_a4 + arctan2(sin_q4_front_up_up, cos_q4_front_up_up)/DEGREE
+            r21_from_q1234_front_up_up = -r21_from_q1_front*cos_q4_front_up_up - r11_from_q123_front_up*sin_q4_front_up_up
+            r22_from_q1234_front_up_up = -r22_from_q1_front*cos_q4_front_up_up - r12_from_q123_front_up*sin_q4_front_up_up
+            direction_of_axis_a6_front_up_up = (
+                offset_a6 + arctan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up)/DEGREE
+            )
         axis_a4_back_up_down = offset_a4 + arctan2(sin_q4_back_up_down, cos_q4_back_up_down)/DEGREE  # A4: its turn
-        r23_from_q123_back_up = -r13_from_q1_back*cos_q23_back_up - r33*sin_q23_back_up
-        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4_back_up, -r23_from_q123_back_up)/DEGREE  # A5: its turn
         r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
         r21_from_q1234_back_up_down = (
             -r21_from_q1_back*cos_q4_back_up_down - r11_from_q123_back_up*sin_q4_back_up_down
@@ -899,40 +926,43 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # A6: its turn
         axis_a6_back_up_down = offset_a6 + arctan2(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down)/DEGREE
-        axis_a4_front_down_up = offset_a4 + arctan2(sin_q4_front_down_up, cos_q4_front_down_up)/DEGREE  # A4: its turn
+        if radius_q4_back_up > 1e-11:
+            direction_of_axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
+            direction_of_axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
+        else:
+            direction_of_axis_a4_back_up_up = offset_a4 + arctan2(sin_q4_back_up_up, cos_q4_back_up_up)/DEGREE
+            r21_from_q1234_back_up_up = -r21_from_q1_back*cos_q4_back_up_up - r11_from_q123_back_up*sin_q4_back_up_up
+            r22_from_q1234_back_up_up = -r22_from_q1_back*cos_q4_back_up_up - r12_from_q123_back_up*sin_q4_back_up_up
+            direction_of_axis_a6_back_up_up = (
+                offset_a6 + arctan2(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up)/DEGREE
+            )
+        refusal_front = 0.0 if sine_square_q3_front >= -1e-12 else 3.0  # q3: out of reach
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)/DEGREE  # A1: its turn
+        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down)/DEGREE  # A2: its turn
+        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down)/DEGREE  # A3: its turn
+        r23_from_q123_front_down = -r13_from_q1_front*cos_q23_front_down - r33*sin_q23_front_down
         # A5: its turn
-        axis_a5_front_down_up = offset_a5 + arctan2(-radius_q4_front_down, -r23_from_q123_front_down)/DEGREE
-        r21_from_q1234_front_down_up = (
-            -r21_from_q1_front*cos_q4_front_down_up - r11_from_q123_front_down*sin_q4_front_down_up
-        )
-        r22_from_q1234_front_down_up = (
-            -r22_from_q1_front*cos_q4_front_down_up - r12_from_q123_front_down*sin_q4_front_down_up
-        )
-        # A6: its turn
-        axis_a6_front_down_up = offset_a6 + arctan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up)/DEGREE
-        axis_a4_back_down_up = offset_a4 + arctan2(sin_q4_back_down_up, cos_q4_back_down_up)/DEGREE  # A4: its turn
+        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4_front_down, -r23_from_q123_front_down)/DEGREE
+        refusal_back = 0.0 if sine_square_q3_back >= -1e-12 else 3.0  # q3: out of reach
+        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)/DEGREE  # A1: its turn
+        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down)/DEGREE  # A2: its turn
+        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down)/DEGREE  # A3: its turn
+        r23_from_q123_back_down = -r13_from_q1_back*cos_q23_back_down - r33*sin_q23_back_down
         # A5: its turn
-        axis_a5_back_down_up = offset_a5 + arctan2(-radius_q4_back_down, -r23_from_q123_back_down)/DEGREE
-        r21_from_q1234_back_down_up = (
-            -r21_from_q1_back*cos_q4_back_down_up - r11_from_q123_back_down*sin_q4_back_down_up
-        )
-        r22_from_q1234_back_down_up = (
-            -r22_from_q1_back*cos_q4_back_down_up - r12_from_q123_back_down*sin_q4_back_down_up
-        )
-        # A6: its turn
-        axis_a6_back_down_up = offset_a6 + arctan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up)/DEGREE
-        axis_a4_front_up_up = offset_a4 + arctan2(sin_q4_front_up_up, cos_q4_front_up_up)/DEGREE  # A4: its turn
-        axis_a5_front_up_up = offset_a5 + arctan2(-radius_q4_front_up, -r23_from_q123_front_up)/DEGREE  # A5: its turn
-        r21_from_q1234_front_up_up = -r21_from_q1_front*cos_q4_front_up_up - r11_from_q123_front_up*sin_q4_front_up_up
-        r22_from_q1234_front_up_up = -r22_from_q1_front*cos_q4_front_up_up - r12_from_q123_front_up*sin_q4_front_up_up
-        # A6: its turn
-        axis_a6_front_up_up = offset_a6 + arctan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up)/DEGREE
-        axis_a4_back_up_up = offset_a4 + arctan2(sin_q4_back_up_up, cos_q4_back_up_up)/DEGREE  # A4: its turn
-        axis_a5_back_up_up = offset_a5 + arctan2(-radius_q4_back_up, -r23_from_q123_back_up)/DEGREE  # A5: its turn
-        r21_from_q1234_back_up_up = -r21_from_q1_back*cos_q4_back_up_up - r11_from_q123_back_up*sin_q4_back_up_up
-        r22_from_q1234_back_up_up = -r22_from_q1_back*cos_q4_back_up_up - r12_from_q123_back_up*sin_q4_back_up_up
-        # A6: its turn
-        axis_a6_back_up_up = offset_a6 + arctan2(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up)/DEGREE
+        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4_back_down, -r23_from_q123_back_down)/DEGREE
+        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up)/DEGREE  # A2: its turn
+        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up)/DEGREE  # A3: its turn
+        r23_from_q123_front_up = -r13_from_q1_front*cos_q23_front_up - r33*sin_q23_front_up
+        # A5: its turn
+        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4_front_up, -r23_from_q123_front_up)/DEGREE
+        axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up)/DEGREE  # A2: its turn
+        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up)/DEGREE  # A3: its turn
+        r23_from_q123_back_up = -r13_from_q1_back*cos_q23_back_up - r33*sin_q23_back_up
+        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4_back_up, -r23_from_q123_back_up)/DEGREE  # A5: its turn
+        axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
+        axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
+        axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
+        axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: its turn
         return (
             (
                 (
@@ -968,32 +998,32 @@ def unrolled(k: Constants) -> Unrolled:
             ),
             (
                 (
-                    axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_up,
-                    axis_a5_front_down_up, axis_a6_front_down_up,
+                    axis_a1_front, axis_a2_front_down, axis_a3_front_down, direction_of_axis_a4_front_down_up,
+                    axis_a5_front_down_up, direction_of_axis_a6_front_down_up,
                 )
                 if refusal_front == 0.0
                 else None
             ),
             (
                 (
-                    axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_up, axis_a5_back_down_up,
-                    axis_a6_back_down_up,
+                    axis_a1_back, axis_a2_back_down, axis_a3_back_down, direction_of_axis_a4_back_down_up,
+                    axis_a5_back_down_up, direction_of_axis_a6_back_down_up,
                 )
                 if refusal_back == 0.0
                 else None
             ),
             (
                 (
-                    axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_up, axis_a5_front_up_up,
-                    axis_a6_front_up_up,
+                    axis_a1_front, axis_a2_front_up, axis_a3_front_up, direction_of_axis_a4_front_up_up,
+                    axis_a5_front_up_up, direction_of_axis_a6_front_up_up,
                 )
                 if refusal_front == 0.0
                 else None
             ),
             (
                 (
-                    axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_up, axis_a5_back_up_up,
-                    axis_a6_back_up_up,
+                    axis_a1_back, axis_a2_back_up, axis_a3_back_up, direction_of_axis_a4_back_up_up,
+                    axis_a5_back_up_up, direction_of_axis_a6_back_up_up,
                 )
                 if refusal_back == 0.0
                 else None
@@ -1009,12 +1039,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
+        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return None
-        if distance_q1 > 1e-11*machine_scale:
+        if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d3/divisor_q1
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
             cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
@@ -1029,17 +1059,17 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (effective_q3 + reach - a2)*(a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)
-            *(a2 + reach - effective_q3)/(swing_scale_q3*swing_scale_q3)
+            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
+            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
-        sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
-        if reach > 1e-11*machine_scale:
+        cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3
+        sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = d4*cos_q3 - a3*sin_q3
             arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
             # q2: linear pair in the x_from_q1 and y_from_q1 equations

@@ -32,6 +32,14 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     tcp_displacement = k.tcp_displacement
+    machine_scale_times_plane = 1e-6*machine_scale
+    displacement_minus_tcp_displacement = displacement - tcp_displacement
+    inner_arm_times_shortest_link = 1e-9*inner_arm
+    inner_arm_times_2 = 2.0*inner_arm
+    inner_arm_plus_outer_arm = inner_arm + outer_arm
+    inner_arm_minus_outer_arm = inner_arm - outer_arm
+    constant_part = inner_arm*inner_arm - outer_arm*outer_arm
+    assembly_sign_by_outer_arm_squared = assembly_sign/(outer_arm*outer_arm)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -41,46 +49,48 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
             return 4*(2.0,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 4*(3.0,)
-        span_1_x = displacement + x - tcp_displacement  # rod 1
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*inner_arm):
+        if not (effective_a1 > inner_arm_times_shortest_link):
             return 4*(3.0,)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link else 1.0
+        swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
-            *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
+            (inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 + inner_arm_minus_outer_arm)
+            *(divisor_a1 + inner_arm_plus_outer_arm)*(divisor_a1 - inner_arm_minus_outer_arm)
+            /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 4*(3.0,)
-        span_2_x = tcp_displacement + x - displacement  # rod 2
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*inner_arm):
+        if not (effective_a2 > inner_arm_times_shortest_link):
             return 4*(3.0,)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link else 1.0
+        swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
-            *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
+            (inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 + inner_arm_minus_outer_arm)
+            *(divisor_a2 + inner_arm_plus_outer_arm)*(divisor_a2 - inner_arm_minus_outer_arm)
+            /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 4*(3.0,)
-        cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
+        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         sin_swing_a1_outward = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
         cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1_outward/divisor_a1
         sin_a1_outward = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
-        cos_swing_a2 = (divisor_a2*divisor_a2 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a2
+        cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
         sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         cos_a2_outward = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_outward = displacement + inner_arm*cos_a2_outward - tcp_displacement  # rod 2
+        pivot_2_x_outward = displacement_minus_tcp_displacement + inner_arm*cos_a2_outward  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
         sin_a2_outward = span_2_x*sin_swing_a2_outward/divisor_a2 - y*cos_swing_a2/divisor_a2
         pivot_2_y_outward = -inner_arm*sin_a2_outward  # rod 2
@@ -94,7 +104,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
         cos_a2_inward = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_inward = displacement + inner_arm*cos_a2_inward - tcp_displacement  # rod 2
+        pivot_2_x_inward = displacement_minus_tcp_displacement + inner_arm*cos_a2_inward  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
         sin_a2_inward = -y*cos_swing_a2/divisor_a2 - span_2_x*sin_swing_a2_outward/divisor_a2
         pivot_2_y_inward = -inner_arm*sin_a2_inward  # rod 2
@@ -103,13 +113,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x_outward = tcp_displacement - displacement - inner_arm*cos_a1_outward  # rod 1
+            pivot_1_x_outward = -displacement_minus_tcp_displacement - inner_arm*cos_a1_outward  # rod 1
             rod_1_x_outward = x - pivot_1_x_outward
             pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
             rod_1_y_outward = y - pivot_1_y_outward
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 type2_arms_aligned_outward_outward = (
-                    assembly_sign*(rod_1_x_outward*rod_2_y_outward - rod_1_y_outward*rod_2_x_outward)/(outer_arm*outer_arm)
+                    assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_outward - rod_1_y_outward*rod_2_x_outward)
                 )
                 # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_outward_outward_2 = 0.0 if type2_arms_aligned_outward_outward >= min_type2_margin else 3.0
@@ -117,7 +127,7 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_outward_outward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 type2_arms_aligned_outward_inward = (
-                    assembly_sign*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)/(outer_arm*outer_arm)
+                    assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)
                 )
                 # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_outward_inward_2 = 0.0 if type2_arms_aligned_outward_inward >= min_type2_margin else 3.0
@@ -132,13 +142,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x_inward = tcp_displacement - displacement - inner_arm*cos_a1_inward  # rod 1
+            pivot_1_x_inward = -displacement_minus_tcp_displacement - inner_arm*cos_a1_inward  # rod 1
             rod_1_x_inward = x - pivot_1_x_inward
             pivot_1_y_inward = -inner_arm*sin_a1_inward  # rod 1
             rod_1_y_inward = y - pivot_1_y_inward
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 type2_arms_aligned_inward_outward = (
-                    assembly_sign*(rod_1_x_inward*rod_2_y_outward - rod_1_y_inward*rod_2_x_outward)/(outer_arm*outer_arm)
+                    assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_outward - rod_1_y_inward*rod_2_x_outward)
                 )
                 # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_inward_outward_2 = 0.0 if type2_arms_aligned_inward_outward >= min_type2_margin else 3.0
@@ -146,7 +156,7 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_inward_outward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 type2_arms_aligned_inward_inward = (
-                    assembly_sign*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)/(outer_arm*outer_arm)
+                    assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)
                 )
                 # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_inward_inward_2 = 0.0 if type2_arms_aligned_inward_inward >= min_type2_margin else 3.0
@@ -166,87 +176,89 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 4*(None,)
-        span_1_x = displacement + x - tcp_displacement  # rod 1
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*inner_arm):
+        if not (effective_a1 > inner_arm_times_shortest_link):
             return 4*(None,)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link else 1.0
+        swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
-            *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
+            (inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 + inner_arm_minus_outer_arm)
+            *(divisor_a1 + inner_arm_plus_outer_arm)*(divisor_a1 - inner_arm_minus_outer_arm)
+            /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 4*(None,)
-        span_2_x = tcp_displacement + x - displacement  # rod 2
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*inner_arm):
+        if not (effective_a2 > inner_arm_times_shortest_link):
             return 4*(None,)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link else 1.0
+        swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
-            *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
+            (inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 + inner_arm_minus_outer_arm)
+            *(divisor_a2 + inner_arm_plus_outer_arm)*(divisor_a2 - inner_arm_minus_outer_arm)
+            /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 4*(None,)
-        cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
+        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         sin_swing_a1_outward = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
         cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1_outward/divisor_a1
-        pivot_1_x_outward = tcp_displacement - displacement - inner_arm*cos_a1_outward  # rod 1
+        pivot_1_x_outward = -displacement_minus_tcp_displacement - inner_arm*cos_a1_outward  # rod 1
         rod_1_x_outward = x - pivot_1_x_outward
         sin_a1_outward = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
         pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
         rod_1_y_outward = y - pivot_1_y_outward
-        cos_swing_a2 = (divisor_a2*divisor_a2 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a2
+        cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
         sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         cos_a2_outward = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_outward = displacement + inner_arm*cos_a2_outward - tcp_displacement  # rod 2
+        pivot_2_x_outward = displacement_minus_tcp_displacement + inner_arm*cos_a2_outward  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
         sin_a2_outward = span_2_x*sin_swing_a2_outward/divisor_a2 - y*cos_swing_a2/divisor_a2
         pivot_2_y_outward = -inner_arm*sin_a2_outward  # rod 2
         rod_2_y_outward = y - pivot_2_y_outward
         type2_arms_aligned_outward_outward = (
-            assembly_sign*(rod_1_x_outward*rod_2_y_outward - rod_1_y_outward*rod_2_x_outward)/(outer_arm*outer_arm)
+            assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_outward - rod_1_y_outward*rod_2_x_outward)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_outward = 0.0 if type2_arms_aligned_outward_outward >= min_type2_margin else 3.0
         axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward)/DEGREE  # A1: its turn
         axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward)/DEGREE  # A2: its turn
         cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + y*sin_swing_a1_outward/divisor_a1
-        pivot_1_x_inward = tcp_displacement - displacement - inner_arm*cos_a1_inward  # rod 1
+        pivot_1_x_inward = -displacement_minus_tcp_displacement - inner_arm*cos_a1_inward  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
         sin_a1_inward = y*cos_swing_a1/divisor_a1 - span_1_x*sin_swing_a1_outward/divisor_a1
         pivot_1_y_inward = -inner_arm*sin_a1_inward  # rod 1
         rod_1_y_inward = y - pivot_1_y_inward
         type2_arms_aligned_inward_outward = (
-            assembly_sign*(rod_1_x_inward*rod_2_y_outward - rod_1_y_inward*rod_2_x_outward)/(outer_arm*outer_arm)
+            assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_outward - rod_1_y_inward*rod_2_x_outward)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_outward = 0.0 if type2_arms_aligned_inward_outward >= min_type2_margin else 3.0
         axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward)/DEGREE  # A1: its turn
         cos_a2_inward = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_inward = displacement + inner_arm*cos_a2_inward - tcp_displacement  # rod 2
+        pivot_2_x_inward = displacement_minus_tcp_displacement + inner_arm*cos_a2_inward  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
         sin_a2_inward = -y*cos_swing_a2/divisor_a2 - span_2_x*sin_swing_a2_outward/divisor_a2
         pivot_2_y_inward = -inner_arm*sin_a2_inward  # rod 2
         rod_2_y_inward = y - pivot_2_y_inward
         type2_arms_aligned_outward_inward = (
-            assembly_sign*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)/(outer_arm*outer_arm)
+            assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = 0.0 if type2_arms_aligned_outward_inward >= min_type2_margin else 3.0
         axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward)/DEGREE  # A2: its turn
         type2_arms_aligned_inward_inward = (
-            assembly_sign*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)/(outer_arm*outer_arm)
+            assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_inward = 0.0 if type2_arms_aligned_inward_inward >= min_type2_margin else 3.0
@@ -262,55 +274,57 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2 = signs
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
-        span_1_x = displacement + x - tcp_displacement  # rod 1
+        span_1_x = displacement_minus_tcp_displacement + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*inner_arm):
+        if not (effective_a1 > inner_arm_times_shortest_link):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_times_shortest_link else 1.0
+        swing_scale_a1 = divisor_a1*inner_arm_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
-            *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
+            (inner_arm_plus_outer_arm - divisor_a1)*(divisor_a1 + inner_arm_minus_outer_arm)
+            *(divisor_a1 + inner_arm_plus_outer_arm)*(divisor_a1 - inner_arm_minus_outer_arm)
+            /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return None
-        span_2_x = tcp_displacement + x - displacement  # rod 2
+        span_2_x = x - displacement_minus_tcp_displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*inner_arm):
+        if not (effective_a2 > inner_arm_times_shortest_link):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_times_shortest_link else 1.0
+        swing_scale_a2 = divisor_a2*inner_arm_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
-            *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
+            (inner_arm_plus_outer_arm - divisor_a2)*(divisor_a2 + inner_arm_minus_outer_arm)
+            *(divisor_a2 + inner_arm_plus_outer_arm)*(divisor_a2 - inner_arm_minus_outer_arm)
+            /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        cos_swing_a1 = (outer_arm*outer_arm - divisor_a1*divisor_a1 - inner_arm*inner_arm)/swing_scale_a1
+        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
-        pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
-        cos_swing_a2 = (divisor_a2*divisor_a2 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a2
+        cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
         sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
-        pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
         rod_2_x = x - pivot_2_x
         sin_a2 = span_2_x*sin_swing_a2/divisor_a2 - y*cos_swing_a2/divisor_a2
         pivot_2_y = -inner_arm*sin_a2  # rod 2
         rod_2_y = y - pivot_2_y
-        type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(outer_arm*outer_arm)
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

@@ -27,6 +27,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_r = k.offset_r
     offset_theta = k.offset_theta
     single_theta = k.single_theta
+    machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -41,7 +42,7 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
             return 1*(3.0,)
-        if radius_theta > 1e-11*machine_scale:
+        if radius_theta > machine_scale_times_free_angle:
             cos_theta = x/radius_theta  # its reference where it is free
             sin_theta = y/radius_theta
         else:
@@ -55,7 +56,7 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of Theta
         if not (axis_theta >= lowest_theta and axis_theta <= highest_theta):
             return 1*(3.0,)
-        if radius_phi > 1e-11*machine_scale:
+        if radius_phi > machine_scale_times_free_angle:
             cos_phi = z/radius_phi  # its reference where it is free
             sin_phi = radius_theta/radius_phi
         else:
@@ -75,7 +76,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         _, ref_theta, ref_phi = reference
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        if radius_theta > 1e-11*machine_scale:
+        if radius_theta > machine_scale_times_free_angle:
             cos_theta = x/radius_theta  # its reference where it is free
             sin_theta = y/radius_theta
         else:
@@ -83,7 +84,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_theta = cos(free_theta)  # its reference where it is free
             sin_theta = sin(free_theta)
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        if radius_phi > 1e-11*machine_scale:
+        if radius_phi > machine_scale_times_free_angle:
             cos_phi = z/radius_phi  # its reference where it is free
             sin_phi = radius_theta/radius_phi
         else:
@@ -102,7 +103,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         _, ref_theta, ref_phi = reference
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        if radius_theta > 1e-11*machine_scale:
+        if radius_theta > machine_scale_times_free_angle:
             cos_theta = x/radius_theta  # its reference where it is free
             sin_theta = y/radius_theta
         else:
@@ -110,7 +111,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_theta = cos(free_theta)  # its reference where it is free
             sin_theta = sin(free_theta)
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        if radius_phi > 1e-11*machine_scale:
+        if radius_phi > machine_scale_times_free_angle:
             cos_phi = z/radius_phi  # its reference where it is free
             sin_phi = radius_theta/radius_phi
         else:

@@ -50,6 +50,28 @@ def unrolled(k: Constants) -> Unrolled:
     tcp_radius_1 = k.tcp_radius_1
     tcp_radius_2 = k.tcp_radius_2
     tcp_radius_3 = k.tcp_radius_3
+    constant_part = base_radius_1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
+    constant_part_2 = base_radius_1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+    inner_arm_1_times_shortest_link = 1e-9*inner_arm_1
+    inner_arm_1_times_2 = 2.0*inner_arm_1
+    constant_part_3 = inner_arm_1*inner_arm_1 - outer_arm_1*outer_arm_1
+    constant_part_4 = base_radius_2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+    constant_part_5 = base_radius_2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+    inner_arm_2_times_shortest_link = 1e-9*inner_arm_2
+    inner_arm_2_times_2 = 2.0*inner_arm_2
+    constant_part_6 = inner_arm_2*inner_arm_2 - outer_arm_2*outer_arm_2
+    constant_part_7 = base_radius_3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+    constant_part_8 = base_radius_3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+    inner_arm_3_times_shortest_link = 1e-9*inner_arm_3
+    inner_arm_3_times_2 = 2.0*inner_arm_3
+    constant_part_9 = inner_arm_3*inner_arm_3 - outer_arm_3*outer_arm_3
+    cos_azimuth_1_times_inner_arm_1 = inner_arm_1*cos_azimuth_1
+    inner_arm_1_times_sin_azimuth_1 = inner_arm_1*sin_azimuth_1
+    cos_azimuth_2_times_inner_arm_2 = inner_arm_2*cos_azimuth_2
+    inner_arm_2_times_sin_azimuth_2 = inner_arm_2*sin_azimuth_2
+    cos_azimuth_3_times_inner_arm_3 = inner_arm_3*cos_azimuth_3
+    inner_arm_3_times_sin_azimuth_3 = inner_arm_3*sin_azimuth_3
+    constant_part_10 = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -61,119 +83,80 @@ def unrolled(k: Constants) -> Unrolled:
             and abs(ref_a3) <= 1e9
         ):
             return 8*(2.0,)
-        span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
-        span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
+        span_1_x = x - constant_part  # rod 1
+        span_1_y = y - constant_part_2  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*inner_arm_1):
+        if not (effective_a1 > inner_arm_1_times_shortest_link):
             return 8*(3.0,)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
+        swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (
-                2.0*divisor_a1*inner_arm_1 + inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z
-                - outer_arm_1*outer_arm_1
-            )
-            *(
-                2.0*divisor_a1*inner_arm_1 + outer_arm_1*outer_arm_1 - inner_arm_1*inner_arm_1 - span_1_x*span_1_x
-                - span_1_y*span_1_y - z*z
-            )
+            (divisor_a1*inner_arm_1_times_2 - constant_part_3 - span_1_x*span_1_x - span_1_y*span_1_y - z*z)
+            *(constant_part_3 + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(3.0,)
-        span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
-        span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
+        span_2_x = x - constant_part_4  # rod 2
+        span_2_y = y - constant_part_5  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*inner_arm_2):
+        if not (effective_a2 > inner_arm_2_times_shortest_link):
             return 8*(3.0,)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
+        swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (
-                2.0*divisor_a2*inner_arm_2 + inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z
-                - outer_arm_2*outer_arm_2
-            )
-            *(
-                2.0*divisor_a2*inner_arm_2 + outer_arm_2*outer_arm_2 - inner_arm_2*inner_arm_2 - span_2_x*span_2_x
-                - span_2_y*span_2_y - z*z
-            )
+            (divisor_a2*inner_arm_2_times_2 - constant_part_6 - span_2_x*span_2_x - span_2_y*span_2_y - z*z)
+            *(constant_part_6 + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(3.0,)
-        span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
-        span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
+        span_3_x = x - constant_part_7  # rod 3
+        span_3_y = y - constant_part_8  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 1e-9*inner_arm_3):
+        if not (effective_a3 > inner_arm_3_times_shortest_link):
             return 8*(3.0,)
-        divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
-        swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
+        swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (
-                2.0*divisor_a3*inner_arm_3 + inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z
-                - outer_arm_3*outer_arm_3
-            )
-            *(
-                2.0*divisor_a3*inner_arm_3 + outer_arm_3*outer_arm_3 - inner_arm_3*inner_arm_3 - span_3_x*span_3_x
-                - span_3_y*span_3_y - z*z
-            )
+            (divisor_a3*inner_arm_3_times_2 - constant_part_9 - span_3_x*span_3_x - span_3_y*span_3_y - z*z)
+            *(constant_part_9 + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 8*(3.0,)
-        cos_swing_a1 = (
-            (inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z - outer_arm_1*outer_arm_1)
-            /swing_scale_a1
-        )
+        cos_swing_a1 = (constant_part_3 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)/swing_scale_a1
         sin_swing_a1_outward = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
         cos_a1_outward = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1_outward/divisor_a1
         sin_a1_outward = along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
-        cos_swing_a2 = (
-            (inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z - outer_arm_2*outer_arm_2)
-            /swing_scale_a2
-        )
+        cos_swing_a2 = (constant_part_6 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)/swing_scale_a2
         sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         cos_a2_outward = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_x_outward = (
-            base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2_outward*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
-        )
+        pivot_2_x_outward = constant_part_4 + cos_a2_outward*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
-        # rod 2
-        pivot_2_y_outward = (
-            base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2_outward*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
-        )
+        pivot_2_y_outward = constant_part_5 + inner_arm_2_times_sin_azimuth_2*cos_a2_outward  # rod 2
         rod_2_y_outward = y - pivot_2_y_outward
         sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z_outward = -inner_arm_2*sin_a2_outward  # rod 2
         rod_2_z_outward = z - pivot_2_z_outward
-        cos_swing_a3 = (
-            (inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z - outer_arm_3*outer_arm_3)
-            /swing_scale_a3
-        )
+        cos_swing_a3 = (constant_part_9 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)/swing_scale_a3
         sin_swing_a3_outward = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
         cos_a3_outward = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3_outward/divisor_a3
-        # rod 3
-        pivot_3_x_outward = (
-            base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3_outward*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
-        )
+        pivot_3_x_outward = constant_part_7 + cos_a3_outward*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x_outward = x - pivot_3_x_outward
-        # rod 3
-        pivot_3_y_outward = (
-            base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3_outward*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
-        )
+        pivot_3_y_outward = constant_part_8 + inner_arm_3_times_sin_azimuth_3*cos_a3_outward  # rod 3
         rod_3_y_outward = y - pivot_3_y_outward
         sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
         pivot_3_z_outward = -inner_arm_3*sin_a3_outward  # rod 3
@@ -191,15 +174,9 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
         cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - z*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_x_inward = (
-            base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2_inward*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
-        )
+        pivot_2_x_inward = constant_part_4 + cos_a2_inward*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
-        # rod 2
-        pivot_2_y_inward = (
-            base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2_inward*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
-        )
+        pivot_2_y_inward = constant_part_5 + inner_arm_2_times_sin_azimuth_2*cos_a2_inward  # rod 2
         rod_2_y_inward = y - pivot_2_y_inward
         sin_a2_inward = -along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z_inward = -inner_arm_2*sin_a2_inward  # rod 2
@@ -208,15 +185,9 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
         cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - z*sin_swing_a3_outward/divisor_a3
-        # rod 3
-        pivot_3_x_inward = (
-            base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3_inward*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
-        )
+        pivot_3_x_inward = constant_part_7 + cos_a3_inward*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x_inward = x - pivot_3_x_inward
-        # rod 3
-        pivot_3_y_inward = (
-            base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3_inward*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
-        )
+        pivot_3_y_inward = constant_part_8 + inner_arm_3_times_sin_azimuth_3*cos_a3_inward  # rod 3
         rod_3_y_inward = y - pivot_3_y_inward
         sin_a3_inward = -along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
         pivot_3_z_inward = -inner_arm_3*sin_a3_inward  # rod 3
@@ -225,28 +196,21 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
             axis_a3_inward = nearest_period(axis_a3_inward, open_a3)
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            # rod 1
-            pivot_1_x_outward = (
-                base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1_outward*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-            )
+            pivot_1_x_outward = constant_part + cos_a1_outward*cos_azimuth_1_times_inner_arm_1  # rod 1
             rod_1_x_outward = x - pivot_1_x_outward
-            # rod 1
-            pivot_1_y_outward = (
-                base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1_outward*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
-            )
+            pivot_1_y_outward = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1_outward  # rod 1
             rod_1_y_outward = y - pivot_1_y_outward
             pivot_1_z_outward = -inner_arm_1*sin_a1_outward  # rod 1
             rod_1_z_outward = z - pivot_1_z_outward
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_outward_outward_outward = (
-                        assembly_sign
+                        constant_part_10
                         *(
                             rod_1_x_outward*rod_2_y_outward*rod_3_z_outward + rod_1_y_outward*rod_2_z_outward*rod_3_x_outward
                             + rod_1_z_outward*rod_2_x_outward*rod_3_y_outward - rod_1_x_outward*rod_2_z_outward*rod_3_y_outward
                             - rod_1_y_outward*rod_2_x_outward*rod_3_z_outward - rod_1_z_outward*rod_2_y_outward*rod_3_x_outward
                         )
-                        /(outer_arm_1*outer_arm_2*outer_arm_3)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_outward_2 = (
@@ -259,13 +223,12 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_outward_outward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_outward_inward = (
-                        assembly_sign
+                        constant_part_10
                         *(
                             rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_y_outward*rod_2_z_outward*rod_3_x_inward
                             + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
                             - rod_1_y_outward*rod_2_x_outward*rod_3_z_inward - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward
                         )
-                        /(outer_arm_1*outer_arm_2*outer_arm_3)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_inward_2 = (
@@ -284,13 +247,12 @@ def unrolled(k: Constants) -> Unrolled:
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_outward_inward_outward = (
-                        assembly_sign
+                        constant_part_10
                         *(
                             rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_y_outward*rod_2_z_inward*rod_3_x_outward
                             + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
                             - rod_1_y_outward*rod_2_x_inward*rod_3_z_outward - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward
                         )
-                        /(outer_arm_1*outer_arm_2*outer_arm_3)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_outward_2 = (
@@ -303,13 +265,12 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_outward_inward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_inward_inward = (
-                        assembly_sign
+                        constant_part_10
                         *(
                             rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_y_outward*rod_2_z_inward*rod_3_x_inward
                             + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
                             - rod_1_y_outward*rod_2_x_inward*rod_3_z_inward - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward
                         )
-                        /(outer_arm_1*outer_arm_2*outer_arm_3)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_inward_2 = (
@@ -340,28 +301,21 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            # rod 1
-            pivot_1_x_inward = (
-                base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1_inward*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-            )
+            pivot_1_x_inward = constant_part + cos_a1_inward*cos_azimuth_1_times_inner_arm_1  # rod 1
             rod_1_x_inward = x - pivot_1_x_inward
-            # rod 1
-            pivot_1_y_inward = (
-                base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1_inward*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
-            )
+            pivot_1_y_inward = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1_inward  # rod 1
             rod_1_y_inward = y - pivot_1_y_inward
             pivot_1_z_inward = -inner_arm_1*sin_a1_inward  # rod 1
             rod_1_z_inward = z - pivot_1_z_inward
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_inward_outward_outward = (
-                        assembly_sign
+                        constant_part_10
                         *(
                             rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_y_inward*rod_2_z_outward*rod_3_x_outward
                             + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
                             - rod_1_y_inward*rod_2_x_outward*rod_3_z_outward - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward
                         )
-                        /(outer_arm_1*outer_arm_2*outer_arm_3)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_outward_2 = (
@@ -374,13 +328,12 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_inward_outward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_outward_inward = (
-                        assembly_sign
+                        constant_part_10
                         *(
                             rod_1_x_inward*rod_2_y_outward*rod_3_z_inward + rod_1_y_inward*rod_2_z_outward*rod_3_x_inward
                             + rod_1_z_inward*rod_2_x_outward*rod_3_y_inward - rod_1_x_inward*rod_2_z_outward*rod_3_y_inward
                             - rod_1_y_inward*rod_2_x_outward*rod_3_z_inward - rod_1_z_inward*rod_2_y_outward*rod_3_x_inward
                         )
-                        /(outer_arm_1*outer_arm_2*outer_arm_3)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_inward_2 = (
@@ -399,13 +352,12 @@ def unrolled(k: Constants) -> Unrolled:
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_inward_inward_outward = (
-                        assembly_sign
+                        constant_part_10
                         *(
                             rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_y_inward*rod_2_z_inward*rod_3_x_outward
                             + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
                             - rod_1_y_inward*rod_2_x_inward*rod_3_z_outward - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward
                         )
-                        /(outer_arm_1*outer_arm_2*outer_arm_3)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_outward_2 = (
@@ -418,13 +370,12 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_inward_inward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_inward_inward = (
-                        assembly_sign
+                        constant_part_10
                         *(
                             rod_1_x_inward*rod_2_y_inward*rod_3_z_inward + rod_1_y_inward*rod_2_z_inward*rod_3_x_inward
                             + rod_1_z_inward*rod_2_x_inward*rod_3_y_inward - rod_1_x_inward*rod_2_z_inward*rod_3_y_inward
                             - rod_1_y_inward*rod_2_x_inward*rod_3_z_inward - rod_1_z_inward*rod_2_y_inward*rod_3_x_inward
                         )
-                        /(outer_arm_1*outer_arm_2*outer_arm_3)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward_inward >= min_type2_margin else 3.0
@@ -491,143 +442,97 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
-        span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
+        span_1_x = x - constant_part  # rod 1
+        span_1_y = y - constant_part_2  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*inner_arm_1):
+        if not (effective_a1 > inner_arm_1_times_shortest_link):
             return 8*(None,)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
+        swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (
-                2.0*divisor_a1*inner_arm_1 + inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z
-                - outer_arm_1*outer_arm_1
-            )
-            *(
-                2.0*divisor_a1*inner_arm_1 + outer_arm_1*outer_arm_1 - inner_arm_1*inner_arm_1 - span_1_x*span_1_x
-                - span_1_y*span_1_y - z*z
-            )
+            (divisor_a1*inner_arm_1_times_2 - constant_part_3 - span_1_x*span_1_x - span_1_y*span_1_y - z*z)
+            *(constant_part_3 + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(None,)
-        span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
-        span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
+        span_2_x = x - constant_part_4  # rod 2
+        span_2_y = y - constant_part_5  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*inner_arm_2):
+        if not (effective_a2 > inner_arm_2_times_shortest_link):
             return 8*(None,)
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
+        swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (
-                2.0*divisor_a2*inner_arm_2 + inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z
-                - outer_arm_2*outer_arm_2
-            )
-            *(
-                2.0*divisor_a2*inner_arm_2 + outer_arm_2*outer_arm_2 - inner_arm_2*inner_arm_2 - span_2_x*span_2_x
-                - span_2_y*span_2_y - z*z
-            )
+            (divisor_a2*inner_arm_2_times_2 - constant_part_6 - span_2_x*span_2_x - span_2_y*span_2_y - z*z)
+            *(constant_part_6 + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(None,)
-        span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
-        span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
+        span_3_x = x - constant_part_7  # rod 3
+        span_3_y = y - constant_part_8  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 1e-9*inner_arm_3):
+        if not (effective_a3 > inner_arm_3_times_shortest_link):
             return 8*(None,)
-        divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
-        swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
+        swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (
-                2.0*divisor_a3*inner_arm_3 + inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z
-                - outer_arm_3*outer_arm_3
-            )
-            *(
-                2.0*divisor_a3*inner_arm_3 + outer_arm_3*outer_arm_3 - inner_arm_3*inner_arm_3 - span_3_x*span_3_x
-                - span_3_y*span_3_y - z*z
-            )
+            (divisor_a3*inner_arm_3_times_2 - constant_part_9 - span_3_x*span_3_x - span_3_y*span_3_y - z*z)
+            *(constant_part_9 + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 8*(None,)
-        cos_swing_a1 = (
-            (inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z - outer_arm_1*outer_arm_1)
-            /swing_scale_a1
-        )
+        cos_swing_a1 = (constant_part_3 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)/swing_scale_a1
         sin_swing_a1_outward = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
         cos_a1_outward = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1_outward/divisor_a1
-        # rod 1
-        pivot_1_x_outward = (
-            base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1_outward*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-        )
+        pivot_1_x_outward = constant_part + cos_a1_outward*cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x_outward = x - pivot_1_x_outward
-        # rod 1
-        pivot_1_y_outward = (
-            base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1_outward*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
-        )
+        pivot_1_y_outward = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1_outward  # rod 1
         rod_1_y_outward = y - pivot_1_y_outward
         sin_a1_outward = along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
         pivot_1_z_outward = -inner_arm_1*sin_a1_outward  # rod 1
         rod_1_z_outward = z - pivot_1_z_outward
-        cos_swing_a2 = (
-            (inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z - outer_arm_2*outer_arm_2)
-            /swing_scale_a2
-        )
+        cos_swing_a2 = (constant_part_6 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)/swing_scale_a2
         sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         cos_a2_outward = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_x_outward = (
-            base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2_outward*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
-        )
+        pivot_2_x_outward = constant_part_4 + cos_a2_outward*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
-        # rod 2
-        pivot_2_y_outward = (
-            base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2_outward*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
-        )
+        pivot_2_y_outward = constant_part_5 + inner_arm_2_times_sin_azimuth_2*cos_a2_outward  # rod 2
         rod_2_y_outward = y - pivot_2_y_outward
         sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z_outward = -inner_arm_2*sin_a2_outward  # rod 2
         rod_2_z_outward = z - pivot_2_z_outward
-        cos_swing_a3 = (
-            (inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z - outer_arm_3*outer_arm_3)
-            /swing_scale_a3
-        )
+        cos_swing_a3 = (constant_part_9 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)/swing_scale_a3
         sin_swing_a3_outward = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
         cos_a3_outward = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3_outward/divisor_a3
-        # rod 3
-        pivot_3_x_outward = (
-            base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3_outward*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
-        )
+        pivot_3_x_outward = constant_part_7 + cos_a3_outward*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x_outward = x - pivot_3_x_outward
-        # rod 3
-        pivot_3_y_outward = (
-            base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3_outward*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
-        )
+        pivot_3_y_outward = constant_part_8 + inner_arm_3_times_sin_azimuth_3*cos_a3_outward  # rod 3
         rod_3_y_outward = y - pivot_3_y_outward
         sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
         pivot_3_z_outward = -inner_arm_3*sin_a3_outward  # rod 3
         rod_3_z_outward = z - pivot_3_z_outward
         type2_rods_coplanar_outward_outward_outward = (
-            assembly_sign
+            constant_part_10
             *(
                 rod_1_x_outward*rod_2_y_outward*rod_3_z_outward + rod_1_y_outward*rod_2_z_outward*rod_3_x_outward
                 + rod_1_z_outward*rod_2_x_outward*rod_3_y_outward - rod_1_x_outward*rod_2_z_outward*rod_3_y_outward
                 - rod_1_y_outward*rod_2_x_outward*rod_3_z_outward - rod_1_z_outward*rod_2_y_outward*rod_3_x_outward
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_outward = (
@@ -639,27 +544,20 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward)/DEGREE  # A2: its turn
         axis_a3_outward = offset_a3 + arctan2(sin_a3_outward, cos_a3_outward)/DEGREE  # A3: its turn
         cos_a1_inward = along_a1*cos_swing_a1/divisor_a1 - z*sin_swing_a1_outward/divisor_a1
-        # rod 1
-        pivot_1_x_inward = (
-            base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1_inward*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-        )
+        pivot_1_x_inward = constant_part + cos_a1_inward*cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
-        # rod 1
-        pivot_1_y_inward = (
-            base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1_inward*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
-        )
+        pivot_1_y_inward = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1_inward  # rod 1
         rod_1_y_inward = y - pivot_1_y_inward
         sin_a1_inward = -along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
         pivot_1_z_inward = -inner_arm_1*sin_a1_inward  # rod 1
         rod_1_z_inward = z - pivot_1_z_inward
         type2_rods_coplanar_inward_outward_outward = (
-            assembly_sign
+            constant_part_10
             *(
                 rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_y_inward*rod_2_z_outward*rod_3_x_outward
                 + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
                 - rod_1_y_inward*rod_2_x_outward*rod_3_z_outward - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = (
@@ -669,27 +567,20 @@ def unrolled(k: Constants) -> Unrolled:
         )
         axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward)/DEGREE  # A1: its turn
         cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - z*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_x_inward = (
-            base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2_inward*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
-        )
+        pivot_2_x_inward = constant_part_4 + cos_a2_inward*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
-        # rod 2
-        pivot_2_y_inward = (
-            base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2_inward*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
-        )
+        pivot_2_y_inward = constant_part_5 + inner_arm_2_times_sin_azimuth_2*cos_a2_inward  # rod 2
         rod_2_y_inward = y - pivot_2_y_inward
         sin_a2_inward = -along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z_inward = -inner_arm_2*sin_a2_inward  # rod 2
         rod_2_z_inward = z - pivot_2_z_inward
         type2_rods_coplanar_outward_inward_outward = (
-            assembly_sign
+            constant_part_10
             *(
                 rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_y_outward*rod_2_z_inward*rod_3_x_outward
                 + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
                 - rod_1_y_outward*rod_2_x_inward*rod_3_z_outward - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = (
@@ -699,38 +590,30 @@ def unrolled(k: Constants) -> Unrolled:
         )
         axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward)/DEGREE  # A2: its turn
         type2_rods_coplanar_inward_inward_outward = (
-            assembly_sign
+            constant_part_10
             *(
                 rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_y_inward*rod_2_z_inward*rod_3_x_outward
                 + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
                 - rod_1_y_inward*rod_2_x_inward*rod_3_z_outward - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_outward = 0.0 if type2_rods_coplanar_inward_inward_outward >= min_type2_margin else 3.0
         cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - z*sin_swing_a3_outward/divisor_a3
-        # rod 3
-        pivot_3_x_inward = (
-            base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3_inward*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
-        )
+        pivot_3_x_inward = constant_part_7 + cos_a3_inward*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x_inward = x - pivot_3_x_inward
-        # rod 3
-        pivot_3_y_inward = (
-            base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3_inward*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
-        )
+        pivot_3_y_inward = constant_part_8 + inner_arm_3_times_sin_azimuth_3*cos_a3_inward  # rod 3
         rod_3_y_inward = y - pivot_3_y_inward
         sin_a3_inward = -along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
         pivot_3_z_inward = -inner_arm_3*sin_a3_inward  # rod 3
         rod_3_z_inward = z - pivot_3_z_inward
         type2_rods_coplanar_outward_outward_inward = (
-            assembly_sign
+            constant_part_10
             *(
                 rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_y_outward*rod_2_z_outward*rod_3_x_inward
                 + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
                 - rod_1_y_outward*rod_2_x_outward*rod_3_z_inward - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = (
@@ -740,35 +623,32 @@ def unrolled(k: Constants) -> Unrolled:
         )
         axis_a3_inward = offset_a3 + arctan2(sin_a3_inward, cos_a3_inward)/DEGREE  # A3: its turn
         type2_rods_coplanar_inward_outward_inward = (
-            assembly_sign
+            constant_part_10
             *(
                 rod_1_x_inward*rod_2_y_outward*rod_3_z_inward + rod_1_y_inward*rod_2_z_outward*rod_3_x_inward
                 + rod_1_z_inward*rod_2_x_outward*rod_3_y_inward - rod_1_x_inward*rod_2_z_outward*rod_3_y_inward
                 - rod_1_y_inward*rod_2_x_outward*rod_3_z_inward - rod_1_z_inward*rod_2_y_outward*rod_3_x_inward
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_inward = 0.0 if type2_rods_coplanar_inward_outward_inward >= min_type2_margin else 3.0
         type2_rods_coplanar_outward_inward_inward = (
-            assembly_sign
+            constant_part_10
             *(
                 rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_y_outward*rod_2_z_inward*rod_3_x_inward
                 + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
                 - rod_1_y_outward*rod_2_x_inward*rod_3_z_inward - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0.0 if type2_rods_coplanar_outward_inward_inward >= min_type2_margin else 3.0
         type2_rods_coplanar_inward_inward_inward = (
-            assembly_sign
+            constant_part_10
             *(
                 rod_1_x_inward*rod_2_y_inward*rod_3_z_inward + rod_1_y_inward*rod_2_z_inward*rod_3_x_inward
                 + rod_1_z_inward*rod_2_x_inward*rod_3_y_inward - rod_1_x_inward*rod_2_z_inward*rod_3_y_inward
                 - rod_1_y_inward*rod_2_x_inward*rod_3_z_inward - rod_1_z_inward*rod_2_y_inward*rod_3_x_inward
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = 0.0 if type2_rods_coplanar_inward_inward_inward >= min_type2_margin else 3.0
@@ -787,130 +667,96 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
-        span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
-        span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
+        span_1_x = x - constant_part  # rod 1
+        span_1_y = y - constant_part_2  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
         effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*inner_arm_1):
+        if not (effective_a1 > inner_arm_1_times_shortest_link):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
+        divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
+        swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (
-                2.0*divisor_a1*inner_arm_1 + inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z
-                - outer_arm_1*outer_arm_1
-            )
-            *(
-                2.0*divisor_a1*inner_arm_1 + outer_arm_1*outer_arm_1 - inner_arm_1*inner_arm_1 - span_1_x*span_1_x
-                - span_1_y*span_1_y - z*z
-            )
+            (divisor_a1*inner_arm_1_times_2 - constant_part_3 - span_1_x*span_1_x - span_1_y*span_1_y - z*z)
+            *(constant_part_3 + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return None
-        span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
-        span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
+        span_2_x = x - constant_part_4  # rod 2
+        span_2_y = y - constant_part_5  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*inner_arm_2):
+        if not (effective_a2 > inner_arm_2_times_shortest_link):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
+        divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
+        swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (
-                2.0*divisor_a2*inner_arm_2 + inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z
-                - outer_arm_2*outer_arm_2
-            )
-            *(
-                2.0*divisor_a2*inner_arm_2 + outer_arm_2*outer_arm_2 - inner_arm_2*inner_arm_2 - span_2_x*span_2_x
-                - span_2_y*span_2_y - z*z
-            )
+            (divisor_a2*inner_arm_2_times_2 - constant_part_6 - span_2_x*span_2_x - span_2_y*span_2_y - z*z)
+            *(constant_part_6 + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
-        span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
+        span_3_x = x - constant_part_7  # rod 3
+        span_3_y = y - constant_part_8  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 1e-9*inner_arm_3):
+        if not (effective_a3 > inner_arm_3_times_shortest_link):
             return None
-        divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
-        swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
+        divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
+        swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (
-                2.0*divisor_a3*inner_arm_3 + inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z
-                - outer_arm_3*outer_arm_3
-            )
-            *(
-                2.0*divisor_a3*inner_arm_3 + outer_arm_3*outer_arm_3 - inner_arm_3*inner_arm_3 - span_3_x*span_3_x
-                - span_3_y*span_3_y - z*z
-            )
+            (divisor_a3*inner_arm_3_times_2 - constant_part_9 - span_3_x*span_3_x - span_3_y*span_3_y - z*z)
+            *(constant_part_9 + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return None
-        cos_swing_a1 = (
-            (inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z - outer_arm_1*outer_arm_1)
-            /swing_scale_a1
-        )
+        cos_swing_a1 = (constant_part_3 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)/swing_scale_a1
         sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
+        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x = x - pivot_1_x
-        # rod 1
-        pivot_1_y = base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
         rod_1_y = y - pivot_1_y
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        cos_swing_a2 = (
-            (inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z - outer_arm_2*outer_arm_2)
-            /swing_scale_a2
-        )
+        cos_swing_a2 = (constant_part_6 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)/swing_scale_a2
         sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        pivot_2_x = constant_part_4 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x = x - pivot_2_x
-        # rod 2
-        pivot_2_y = base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        pivot_2_y = constant_part_5 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        cos_swing_a3 = (
-            (inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z - outer_arm_3*outer_arm_3)
-            /swing_scale_a3
-        )
+        cos_swing_a3 = (constant_part_9 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)/swing_scale_a3
         sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+        pivot_3_x = constant_part_7 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x = x - pivot_3_x
-        # rod 3
-        pivot_3_y = base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+        pivot_3_y = constant_part_8 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - z*cos_swing_a3/divisor_a3
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            assembly_sign
+            constant_part_10
             *(
                 rod_1_x*rod_2_y*rod_3_z + rod_1_y*rod_2_z*rod_3_x + rod_1_z*rod_2_x*rod_3_y - rod_1_x*rod_2_z*rod_3_y
                 - rod_1_y*rod_2_x*rod_3_z - rod_1_z*rod_2_y*rod_3_x
             )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):

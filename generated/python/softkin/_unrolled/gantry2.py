@@ -21,6 +21,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale = k.machine_scale
     offset_x = k.offset_x
     offset_y = k.offset_y
+    machine_scale_times_plane = 1e-6*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -29,7 +30,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return 1*(2.0,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 1*(3.0,)
         axis_x = offset_x + x
         # limits of X
@@ -47,7 +48,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 1*(None,)
         axis_x = offset_x + x
         axis_y = offset_y + y
@@ -59,7 +60,7 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         axis_x = offset_x + x
         axis_y = offset_y + y

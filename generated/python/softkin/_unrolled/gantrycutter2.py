@@ -28,6 +28,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_x = k.offset_x
     offset_y = k.offset_y
     single_r = k.single_r
+    machine_scale_times_plane = 1e-6*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -58,7 +59,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 1*(3.0,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 1*(3.0,)
         axis_x = offset_x + x
         # limits of X
@@ -93,7 +94,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 1*(None,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 1*(None,)
         axis_x = offset_x + x
         axis_y = offset_y + y
@@ -116,7 +117,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return None
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         axis_x = offset_x + x
         axis_y = offset_y + y

@@ -36,6 +36,8 @@ def unrolled(k: Constants) -> Unrolled:
     single_b = k.single_b
     tool_length = k.tool_length
     tool_side = k.tool_side
+    tool_length_times_tool_side = tool_length*tool_side
+    offset_b_times_2 = 2.0*offset_b
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -59,17 +61,17 @@ def unrolled(k: Constants) -> Unrolled:
         # a right-handed frame
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return 2*(2.0,)
-        wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
+        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
             return 2*(3.0,)
-        wrist_y = y - r23*tool_length*tool_side
+        wrist_y = y - r23*tool_length_times_tool_side
         axis_y = offset_y + wrist_y
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
             return 2*(3.0,)
-        wrist_z = z - r33*tool_length*tool_side
+        wrist_z = z - r33*tool_length_times_tool_side
         axis_z = offset_z + wrist_z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
@@ -104,10 +106,15 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_b_positive <= highest_b)
             else 3.0
         )
-        axis_a_negative = offset_a + arctan2(sin_a_negative, cos_a_negative + 0.0)/DEGREE  # A: its turn
+        direction_of_axis_a_negative = (
+            180.0 + axis_a_positive
+            if radius_a > 1e-11
+            else offset_a + arctan2(sin_a_negative + 0.0, cos_a_negative + 0.0)/DEGREE
+        )
+        axis_a_negative = direction_of_axis_a_negative  # A: its turn
         if not -180.000000001 <= axis_a_negative - open_a < 179.999999999:
             axis_a_negative = nearest_period(axis_a_negative, open_a)
-        axis_b_negative = offset_b + arctan2(-radius_a, r33 + 0.0)/DEGREE  # B: its turn
+        axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
         if not -180.000000001 <= axis_b_negative - open_b < 179.999999999:
             axis_b_negative = nearest_period(axis_b_negative, open_b)
         # limits of A, limits of B
@@ -149,19 +156,23 @@ def unrolled(k: Constants) -> Unrolled:
             sin_a_positive = sin(free_a)
             cos_a_negative = cos_a_positive  # its reference where it is free
             sin_a_negative = sin_a_positive
-        wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
+        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
-        wrist_y = y - r23*tool_length*tool_side
+        wrist_y = y - r23*tool_length_times_tool_side
         axis_y = offset_y + wrist_y
-        wrist_z = z - r33*tool_length*tool_side
+        wrist_z = z - r33*tool_length_times_tool_side
         axis_z = offset_z + wrist_z
         axis_a_positive = offset_a + arctan2(sin_a_positive, cos_a_positive)/DEGREE  # A: its turn
         axis_b_positive = offset_b + arctan2(radius_a, r33)/DEGREE  # B: its turn
-        axis_a_negative = offset_a + arctan2(sin_a_negative, cos_a_negative)/DEGREE  # A: its turn
-        axis_b_negative = offset_b + arctan2(-radius_a, r33)/DEGREE  # B: its turn
+        direction_of_axis_a_negative = (
+            180.0 + axis_a_positive
+            if radius_a > 1e-11
+            else offset_a + arctan2(sin_a_negative, cos_a_negative)/DEGREE
+        )
+        axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
         return (
             (axis_x, axis_y, axis_z, axis_a_positive, axis_b_positive),
-            (axis_x, axis_y, axis_z, axis_a_negative, axis_b_negative),
+            (axis_x, axis_y, axis_z, direction_of_axis_a_negative, axis_b_negative),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
@@ -181,11 +192,11 @@ def unrolled(k: Constants) -> Unrolled:
             free_a = (ref_a - offset_a)*DEGREE
             cos_a = cos(free_a)  # its reference where it is free
             sin_a = sin(free_a)
-        wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
+        wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
-        wrist_y = y - r23*tool_length*tool_side
+        wrist_y = y - r23*tool_length_times_tool_side
         axis_y = offset_y + wrist_y
-        wrist_z = z - r33*tool_length*tool_side
+        wrist_z = z - r33*tool_length_times_tool_side
         axis_z = offset_z + wrist_z
         axis_a = offset_a + arctan2(sin_a, cos_a)/DEGREE  # A: its turn
         a_radius_of_b = radius_a*sigma_roll

@@ -34,6 +34,45 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     swap_xy = k.swap_xy
+    machine_scale_times_plane = 1e-6*machine_scale
+    link_length_1_times_shortest_link = 1e-9*link_length_1
+    link_length_1_times_2 = 2.0*link_length_1
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    constant_part = link_length_1*link_length_1 - link_length_2*link_length_2
+    link_length_3_by_link_length_2 = link_length_3/link_length_2
+    constant_part_2 = link_length_3*swap_xy/link_length_2
+    link_length_1_times_link_length_2 = link_length_1*link_length_2
+    link_length_1_times_link_length_3 = link_length_1*link_length_3
+    link_length_5_times_shortest_link = 1e-9*link_length_5
+    link_length_5_times_2 = 2.0*link_length_5
+    constant_part_3 = 2.0*link_length_1*link_length_3/link_length_2
+    constant_part_4 = (
+        link_length_1*link_length_1 + link_length_5*link_length_5
+        + 2.0*link_length_1*link_length_1*link_length_3/link_length_2
+        + link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+        - link_length_4*link_length_4
+    )
+    link_length_2_squared = link_length_2*link_length_2
+    constant_part_5 = 2.0*link_length_2*link_length_2*link_length_5
+    constant_part_6 = 2.0*link_length_1*link_length_2*link_length_2
+    constant_part_7 = 2.0*link_length_1*link_length_2*link_length_3
+    constant_part_8 = (
+        link_length_1*link_length_1*link_length_2*link_length_2
+        + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
+        + link_length_1*link_length_1*link_length_3*link_length_3
+        + link_length_2*link_length_2*link_length_5*link_length_5
+        - link_length_2*link_length_2*link_length_4*link_length_4
+    )
+    constant_part_9 = link_length_2*link_length_2*link_length_2*link_length_2
+    constant_part_10 = link_length_1*link_length_3/link_length_2
+    link_length_2_times_swap_xy = link_length_2*swap_xy
+    swap_xy_times_2 = 2.0*swap_xy
+    swap_xy_squared_times_2 = 2.0*swap_xy*swap_xy
+    swap_xy_squared_times_4 = 4.0*swap_xy*swap_xy
+    swap_xy_times_4 = 4.0*swap_xy
+    link_length_4_squared = link_length_4*link_length_4
+    constant_part_11 = assembly_sign*link_length_3/link_length_2
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -43,103 +82,73 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
             return 4*(2.0,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 4*(3.0,)
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*link_length_1):
+        if not (effective_a1 > link_length_1_times_shortest_link):
             return 4*(3.0,)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
+        swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         # kept as a product
         sine_square_a1 = (
-            (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_1 + link_length_2)
-            *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
+            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 + link_length_1_minus_link_length_2)
+            *(divisor_a1 + link_length_1_plus_link_length_2)*(divisor_a1 - link_length_1_minus_link_length_2)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 4*(3.0,)
-        cos_swing_a1 = (
-            (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
-        )
+        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         sin_swing_a1_left = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
         sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1_left/divisor_a1
         cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1_left/divisor_a1
-        # rod rear
-        span_rear_x = (
-            link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
-            - link_length_3*swap_xy*y/link_length_2
-        )
+        span_rear_x = constant_part_2*x - constant_part_2*y - link_length_3_by_link_length_2*x  # rod rear
         along_a2_left = (
             (
-                link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1_left
-                - link_length_1*link_length_3*sin_a1_left
+                link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1_left
+                - link_length_1_times_link_length_3*sin_a1_left
             )
             /link_length_2
         )
-        # rod rear
-        span_rear_y = (
-            link_length_3*swap_xy*y/link_length_2 - link_length_3*y/link_length_2
-            - link_length_3*swap_xy*x/link_length_2
-        )
+        span_rear_y = constant_part_2*y - constant_part_2*x - link_length_3_by_link_length_2*y  # rod rear
         across_a2_left = (
             (
-                link_length_1*link_length_2*cos_a1_left + link_length_1*link_length_3*cos_a1_left
+                link_length_1_times_link_length_2*cos_a1_left + link_length_1_times_link_length_3*cos_a1_left
                 - link_length_2*span_rear_y
             )
             /link_length_2
         )
         # effective length that the angle turns
         effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
-        divisor_a2_left = effective_a2_left if effective_a2_left > 1e-9*link_length_5 else 1.0
-        swing_scale_a2_left = 2.0*divisor_a2_left*link_length_5  # a2: law of cosines in the rod rear equation
+        divisor_a2_left = effective_a2_left if effective_a2_left > link_length_5_times_shortest_link else 1.0
+        swing_scale_a2_left = divisor_a2_left*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_swing_a2_left = (
             (
-                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1_left
-                + 2.0*link_length_1*span_rear_x*sin_a1_left
-                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1_left/link_length_2
-                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1_left/link_length_2 - link_length_1*link_length_1
-                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+                constant_part_3*span_rear_y*cos_a1_left + constant_part_3*span_rear_x*sin_a1_left
+                + link_length_1_times_2*span_rear_y*cos_a1_left + link_length_1_times_2*span_rear_x*sin_a1_left
+                - constant_part_4 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
             )
             /swing_scale_a2_left
         )
         # kept as a product
         sine_square_a2_left = (
             (
-                2.0*divisor_a2_left*link_length_2*link_length_2*link_length_5
-                + link_length_1*link_length_1*link_length_2*link_length_2
-                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                + link_length_1*link_length_1*link_length_3*link_length_3
-                + link_length_2*link_length_2*link_length_5*link_length_5
-                + link_length_2*link_length_2*span_rear_x*span_rear_x
-                + link_length_2*link_length_2*span_rear_y*span_rear_y
-                - link_length_2*link_length_2*link_length_4*link_length_4
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_left
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_left
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_left
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_left
+                constant_part_5*divisor_a2_left + constant_part_6*span_rear_y*cos_a1_left
+                + constant_part_6*span_rear_x*sin_a1_left + constant_part_7*span_rear_y*cos_a1_left
+                + constant_part_7*span_rear_x*sin_a1_left - constant_part_8
+                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
             )
             *(
-                2.0*divisor_a2_left*link_length_2*link_length_2*link_length_5
-                + link_length_2*link_length_2*link_length_4*link_length_4
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_left
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_left
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_left
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_left
-                - link_length_1*link_length_1*link_length_2*link_length_2
-                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                - link_length_1*link_length_1*link_length_3*link_length_3
-                - link_length_2*link_length_2*link_length_5*link_length_5
-                - link_length_2*link_length_2*span_rear_x*span_rear_x
-                - link_length_2*link_length_2*span_rear_y*span_rear_y
+                constant_part_8 + constant_part_5*divisor_a2_left + link_length_2_squared*span_rear_x*span_rear_x
+                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_6*span_rear_y*cos_a1_left
+                - constant_part_6*span_rear_x*sin_a1_left - constant_part_7*span_rear_y*cos_a1_left
+                - constant_part_7*span_rear_x*sin_a1_left
             )
-            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2_left*swing_scale_a2_left)
+            /(constant_part_9*swing_scale_a2_left*swing_scale_a2_left)
         )
         sin_swing_a2_left_left = -(sqrt(sine_square_a2_left) if sine_square_a2_left > 0.0 else 0.0)
         cos_a2_left_left = (
@@ -165,18 +174,16 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left_right = offset_a2 + arctan2(sin_a2_left_right, cos_a2_left_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_right - open_a2 < 179.999999999:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
-        if sine_square_a2_left >= -1e-12 and axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2_left > 1e-9*link_length_5:
+        if sine_square_a2_left >= -1e-12 and axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2_left > link_length_5_times_shortest_link:
             pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
             pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
             # rod rear
             pivot_rear_x_left_left = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_left
+                constant_part_10*sin_a1_left + link_length_1*sin_a1_left - link_length_5*cos_a2_left_left
             )
             # rod rear
             pivot_rear_y_left_left = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
+                constant_part_10*cos_a1_left + link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
             )
             centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
             rod_1_x_left = x - centre_1_x_left
@@ -184,40 +191,39 @@ def unrolled(k: Constants) -> Unrolled:
             rod_1_y_left = y - centre_1_y_left
             centre_2_x_left_left = (
                 (
-                    link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
-                    - link_length_2*pivot_rear_y_left_left*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_x_left_left - link_length_2*pivot_rear_x_left_left
+                    - link_length_2_times_swap_xy*pivot_rear_y_left_left
                 )
                 /link_length_3
             )
             rod_2_x_left_left = x - centre_2_x_left_left
             centre_2_y_left_left = (
                 (
-                    link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
-                    - link_length_2*pivot_rear_x_left_left*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_y_left_left - link_length_2*pivot_rear_y_left_left
+                    - link_length_2_times_swap_xy*pivot_rear_x_left_left
                 )
                 /link_length_3
             )
             rod_2_y_left_left = y - centre_2_y_left_left
             type2_arms_aligned_left_left = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
+                constant_part_11*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
                 /(
                     root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
+                        link_length_2_squared + pivot_upper_x_left*pivot_upper_x_left*swap_xy_squared_times_2
+                        + pivot_upper_x_left*pivot_upper_y_left*swap_xy_times_4
+                        + pivot_upper_y_left*pivot_upper_y_left*swap_xy_squared_times_2
+                        - pivot_upper_x_left*pivot_upper_x_left*swap_xy_times_2
+                        - pivot_upper_x_left*pivot_upper_y_left*swap_xy_squared_times_4
+                        - pivot_upper_y_left*pivot_upper_y_left*swap_xy_times_2
                     )
                     *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
-                        + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
-                        - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
-                        - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
+                        link_length_4_squared + pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy_squared_times_2
+                        + pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy_times_4
+                        + pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy_squared_times_2
+                        - pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy_times_2
+                        - pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy_squared_times_4
+                        - pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy_times_2
                     )
-                    *link_length_2
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
@@ -230,50 +236,47 @@ def unrolled(k: Constants) -> Unrolled:
             )
             # rod rear
             pivot_rear_x_left_right = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_right
+                constant_part_10*sin_a1_left + link_length_1*sin_a1_left - link_length_5*cos_a2_left_right
             )
             # rod rear
             pivot_rear_y_left_right = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
+                constant_part_10*cos_a1_left + link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
             )
             centre_2_x_left_right = (
                 (
-                    link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
-                    - link_length_2*pivot_rear_y_left_right*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_x_left_right - link_length_2*pivot_rear_x_left_right
+                    - link_length_2_times_swap_xy*pivot_rear_y_left_right
                 )
                 /link_length_3
             )
             rod_2_x_left_right = x - centre_2_x_left_right
             centre_2_y_left_right = (
                 (
-                    link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
-                    - link_length_2*pivot_rear_x_left_right*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_y_left_right - link_length_2*pivot_rear_y_left_right
+                    - link_length_2_times_swap_xy*pivot_rear_x_left_right
                 )
                 /link_length_3
             )
             rod_2_y_left_right = y - centre_2_y_left_right
             type2_arms_aligned_left_right = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
+                constant_part_11*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
                 /(
                     root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
+                        link_length_2_squared + pivot_upper_x_left*pivot_upper_x_left*swap_xy_squared_times_2
+                        + pivot_upper_x_left*pivot_upper_y_left*swap_xy_times_4
+                        + pivot_upper_y_left*pivot_upper_y_left*swap_xy_squared_times_2
+                        - pivot_upper_x_left*pivot_upper_x_left*swap_xy_times_2
+                        - pivot_upper_x_left*pivot_upper_y_left*swap_xy_squared_times_4
+                        - pivot_upper_y_left*pivot_upper_y_left*swap_xy_times_2
                     )
                     *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
-                        + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
-                        - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
-                        - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
+                        link_length_4_squared + pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy_squared_times_2
+                        + pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy_times_4
+                        + pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy_squared_times_2
+                        - pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy_times_2
+                        - pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy_squared_times_4
+                        - pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy_times_2
                     )
-                    *link_length_2
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
@@ -293,65 +296,45 @@ def unrolled(k: Constants) -> Unrolled:
         cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_left/divisor_a1
         along_a2_right = (
             (
-                link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1_right
-                - link_length_1*link_length_3*sin_a1_right
+                link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1_right
+                - link_length_1_times_link_length_3*sin_a1_right
             )
             /link_length_2
         )
         across_a2_right = (
             (
-                link_length_1*link_length_2*cos_a1_right + link_length_1*link_length_3*cos_a1_right
+                link_length_1_times_link_length_2*cos_a1_right + link_length_1_times_link_length_3*cos_a1_right
                 - link_length_2*span_rear_y
             )
             /link_length_2
         )
         # effective length that the angle turns
         effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
-        divisor_a2_right = effective_a2_right if effective_a2_right > 1e-9*link_length_5 else 1.0
-        swing_scale_a2_right = 2.0*divisor_a2_right*link_length_5  # a2: law of cosines in the rod rear equation
+        divisor_a2_right = effective_a2_right if effective_a2_right > link_length_5_times_shortest_link else 1.0
+        swing_scale_a2_right = divisor_a2_right*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_swing_a2_right = (
             (
-                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1_right
-                + 2.0*link_length_1*span_rear_x*sin_a1_right
-                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1_right/link_length_2
-                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1_right/link_length_2 - link_length_1*link_length_1
-                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+                constant_part_3*span_rear_y*cos_a1_right + constant_part_3*span_rear_x*sin_a1_right
+                + link_length_1_times_2*span_rear_y*cos_a1_right + link_length_1_times_2*span_rear_x*sin_a1_right
+                - constant_part_4 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
             )
             /swing_scale_a2_right
         )
         # kept as a product
         sine_square_a2_right = (
             (
-                2.0*divisor_a2_right*link_length_2*link_length_2*link_length_5
-                + link_length_1*link_length_1*link_length_2*link_length_2
-                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                + link_length_1*link_length_1*link_length_3*link_length_3
-                + link_length_2*link_length_2*link_length_5*link_length_5
-                + link_length_2*link_length_2*span_rear_x*span_rear_x
-                + link_length_2*link_length_2*span_rear_y*span_rear_y
-                - link_length_2*link_length_2*link_length_4*link_length_4
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_right
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_right
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_right
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_right
+                constant_part_5*divisor_a2_right + constant_part_6*span_rear_y*cos_a1_right
+                + constant_part_6*span_rear_x*sin_a1_right + constant_part_7*span_rear_y*cos_a1_right
+                + constant_part_7*span_rear_x*sin_a1_right - constant_part_8
+                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
             )
             *(
-                2.0*divisor_a2_right*link_length_2*link_length_2*link_length_5
-                + link_length_2*link_length_2*link_length_4*link_length_4
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_right
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_right
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_right
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_right
-                - link_length_1*link_length_1*link_length_2*link_length_2
-                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                - link_length_1*link_length_1*link_length_3*link_length_3
-                - link_length_2*link_length_2*link_length_5*link_length_5
-                - link_length_2*link_length_2*span_rear_x*span_rear_x
-                - link_length_2*link_length_2*span_rear_y*span_rear_y
+                constant_part_8 + constant_part_5*divisor_a2_right + link_length_2_squared*span_rear_x*span_rear_x
+                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_6*span_rear_y*cos_a1_right
+                - constant_part_6*span_rear_x*sin_a1_right - constant_part_7*span_rear_y*cos_a1_right
+                - constant_part_7*span_rear_x*sin_a1_right
             )
-            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2_right*swing_scale_a2_right)
+            /(constant_part_9*swing_scale_a2_right*swing_scale_a2_right)
         )
         sin_swing_a2_right_left = -(sqrt(sine_square_a2_right) if sine_square_a2_right > 0.0 else 0.0)
         cos_a2_right_left = (
@@ -379,18 +362,16 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right_right = offset_a2 + arctan2(sin_a2_right_right, cos_a2_right_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_right - open_a2 < 179.999999999:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
-        if sine_square_a2_right >= -1e-12 and axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2_right > 1e-9*link_length_5:
+        if sine_square_a2_right >= -1e-12 and axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2_right > link_length_5_times_shortest_link:
             pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
             pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
             # rod rear
             pivot_rear_x_right_left = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_left
+                constant_part_10*sin_a1_right + link_length_1*sin_a1_right - link_length_5*cos_a2_right_left
             )
             # rod rear
             pivot_rear_y_right_left = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
+                constant_part_10*cos_a1_right + link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
             )
             centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
             rod_1_x_right = x - centre_1_x_right
@@ -398,40 +379,39 @@ def unrolled(k: Constants) -> Unrolled:
             rod_1_y_right = y - centre_1_y_right
             centre_2_x_right_left = (
                 (
-                    link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
-                    - link_length_2*pivot_rear_y_right_left*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_x_right_left - link_length_2*pivot_rear_x_right_left
+                    - link_length_2_times_swap_xy*pivot_rear_y_right_left
                 )
                 /link_length_3
             )
             rod_2_x_right_left = x - centre_2_x_right_left
             centre_2_y_right_left = (
                 (
-                    link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
-                    - link_length_2*pivot_rear_x_right_left*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_y_right_left - link_length_2*pivot_rear_y_right_left
+                    - link_length_2_times_swap_xy*pivot_rear_x_right_left
                 )
                 /link_length_3
             )
             rod_2_y_right_left = y - centre_2_y_right_left
             type2_arms_aligned_right_left = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
+                constant_part_11*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
                 /(
                     root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
+                        link_length_2_squared + pivot_upper_x_right*pivot_upper_x_right*swap_xy_squared_times_2
+                        + pivot_upper_x_right*pivot_upper_y_right*swap_xy_times_4
+                        + pivot_upper_y_right*pivot_upper_y_right*swap_xy_squared_times_2
+                        - pivot_upper_x_right*pivot_upper_x_right*swap_xy_times_2
+                        - pivot_upper_x_right*pivot_upper_y_right*swap_xy_squared_times_4
+                        - pivot_upper_y_right*pivot_upper_y_right*swap_xy_times_2
                     )
                     *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
-                        + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
-                        - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
-                        - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
+                        link_length_4_squared + pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy_squared_times_2
+                        + pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy_times_4
+                        + pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy_squared_times_2
+                        - pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy_times_2
+                        - pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy_squared_times_4
+                        - pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy_times_2
                     )
-                    *link_length_2
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
@@ -444,50 +424,47 @@ def unrolled(k: Constants) -> Unrolled:
             )
             # rod rear
             pivot_rear_x_right_right = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_right
+                constant_part_10*sin_a1_right + link_length_1*sin_a1_right - link_length_5*cos_a2_right_right
             )
             # rod rear
             pivot_rear_y_right_right = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
+                constant_part_10*cos_a1_right + link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
             )
             centre_2_x_right_right = (
                 (
-                    link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
-                    - link_length_2*pivot_rear_y_right_right*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_x_right_right - link_length_2*pivot_rear_x_right_right
+                    - link_length_2_times_swap_xy*pivot_rear_y_right_right
                 )
                 /link_length_3
             )
             rod_2_x_right_right = x - centre_2_x_right_right
             centre_2_y_right_right = (
                 (
-                    link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
-                    - link_length_2*pivot_rear_x_right_right*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_y_right_right - link_length_2*pivot_rear_y_right_right
+                    - link_length_2_times_swap_xy*pivot_rear_x_right_right
                 )
                 /link_length_3
             )
             rod_2_y_right_right = y - centre_2_y_right_right
             type2_arms_aligned_right_right = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
+                constant_part_11*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
                 /(
                     root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
+                        link_length_2_squared + pivot_upper_x_right*pivot_upper_x_right*swap_xy_squared_times_2
+                        + pivot_upper_x_right*pivot_upper_y_right*swap_xy_times_4
+                        + pivot_upper_y_right*pivot_upper_y_right*swap_xy_squared_times_2
+                        - pivot_upper_x_right*pivot_upper_x_right*swap_xy_times_2
+                        - pivot_upper_x_right*pivot_upper_y_right*swap_xy_squared_times_4
+                        - pivot_upper_y_right*pivot_upper_y_right*swap_xy_times_2
                     )
                     *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
-                        + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
-                        - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
-                        - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
+                        link_length_4_squared + pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy_squared_times_2
+                        + pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy_times_4
+                        + pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy_squared_times_2
+                        - pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy_times_2
+                        - pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy_squared_times_4
+                        - pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy_times_2
                     )
-                    *link_length_2
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
@@ -514,103 +491,73 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 4*(None,)
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*link_length_1):
+        if not (effective_a1 > link_length_1_times_shortest_link):
             return 4*(None,)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
+        swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         # kept as a product
         sine_square_a1 = (
-            (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_1 + link_length_2)
-            *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
+            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 + link_length_1_minus_link_length_2)
+            *(divisor_a1 + link_length_1_plus_link_length_2)*(divisor_a1 - link_length_1_minus_link_length_2)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 4*(None,)
-        cos_swing_a1 = (
-            (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
-        )
+        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         sin_swing_a1_left = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
         sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1_left/divisor_a1
         cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1_left/divisor_a1
-        # rod rear
-        span_rear_x = (
-            link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
-            - link_length_3*swap_xy*y/link_length_2
-        )
+        span_rear_x = constant_part_2*x - constant_part_2*y - link_length_3_by_link_length_2*x  # rod rear
         along_a2_left = (
             (
-                link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1_left
-                - link_length_1*link_length_3*sin_a1_left
+                link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1_left
+                - link_length_1_times_link_length_3*sin_a1_left
             )
             /link_length_2
         )
-        # rod rear
-        span_rear_y = (
-            link_length_3*swap_xy*y/link_length_2 - link_length_3*y/link_length_2
-            - link_length_3*swap_xy*x/link_length_2
-        )
+        span_rear_y = constant_part_2*y - constant_part_2*x - link_length_3_by_link_length_2*y  # rod rear
         across_a2_left = (
             (
-                link_length_1*link_length_2*cos_a1_left + link_length_1*link_length_3*cos_a1_left
+                link_length_1_times_link_length_2*cos_a1_left + link_length_1_times_link_length_3*cos_a1_left
                 - link_length_2*span_rear_y
             )
             /link_length_2
         )
         # effective length that the angle turns
         effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
-        divisor_a2_left = effective_a2_left if effective_a2_left > 1e-9*link_length_5 else 1.0
-        swing_scale_a2_left = 2.0*divisor_a2_left*link_length_5  # a2: law of cosines in the rod rear equation
+        divisor_a2_left = effective_a2_left if effective_a2_left > link_length_5_times_shortest_link else 1.0
+        swing_scale_a2_left = divisor_a2_left*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_swing_a2_left = (
             (
-                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1_left
-                + 2.0*link_length_1*span_rear_x*sin_a1_left
-                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1_left/link_length_2
-                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1_left/link_length_2 - link_length_1*link_length_1
-                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+                constant_part_3*span_rear_y*cos_a1_left + constant_part_3*span_rear_x*sin_a1_left
+                + link_length_1_times_2*span_rear_y*cos_a1_left + link_length_1_times_2*span_rear_x*sin_a1_left
+                - constant_part_4 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
             )
             /swing_scale_a2_left
         )
         # kept as a product
         sine_square_a2_left = (
             (
-                2.0*divisor_a2_left*link_length_2*link_length_2*link_length_5
-                + link_length_1*link_length_1*link_length_2*link_length_2
-                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                + link_length_1*link_length_1*link_length_3*link_length_3
-                + link_length_2*link_length_2*link_length_5*link_length_5
-                + link_length_2*link_length_2*span_rear_x*span_rear_x
-                + link_length_2*link_length_2*span_rear_y*span_rear_y
-                - link_length_2*link_length_2*link_length_4*link_length_4
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_left
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_left
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_left
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_left
+                constant_part_5*divisor_a2_left + constant_part_6*span_rear_y*cos_a1_left
+                + constant_part_6*span_rear_x*sin_a1_left + constant_part_7*span_rear_y*cos_a1_left
+                + constant_part_7*span_rear_x*sin_a1_left - constant_part_8
+                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
             )
             *(
-                2.0*divisor_a2_left*link_length_2*link_length_2*link_length_5
-                + link_length_2*link_length_2*link_length_4*link_length_4
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_left
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_left
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_left
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_left
-                - link_length_1*link_length_1*link_length_2*link_length_2
-                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                - link_length_1*link_length_1*link_length_3*link_length_3
-                - link_length_2*link_length_2*link_length_5*link_length_5
-                - link_length_2*link_length_2*span_rear_x*span_rear_x
-                - link_length_2*link_length_2*span_rear_y*span_rear_y
+                constant_part_8 + constant_part_5*divisor_a2_left + link_length_2_squared*span_rear_x*span_rear_x
+                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_6*span_rear_y*cos_a1_left
+                - constant_part_6*span_rear_x*sin_a1_left - constant_part_7*span_rear_y*cos_a1_left
+                - constant_part_7*span_rear_x*sin_a1_left
             )
-            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2_left*swing_scale_a2_left)
+            /(constant_part_9*swing_scale_a2_left*swing_scale_a2_left)
         )
         sin_swing_a2_left_left = -(sqrt(sine_square_a2_left) if sine_square_a2_left > 0.0 else 0.0)
         cos_a2_left_left = (
@@ -625,18 +572,16 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_left_right = (
             across_a2_left*cos_swing_a2_left/divisor_a2_left - along_a2_left*sin_swing_a2_left_left/divisor_a2_left
         )
-        if sine_square_a2_left >= -1e-12 and effective_a2_left > 1e-9*link_length_5:
+        if sine_square_a2_left >= -1e-12 and effective_a2_left > link_length_5_times_shortest_link:
             pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
             pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
             # rod rear
             pivot_rear_x_left_left = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_left
+                constant_part_10*sin_a1_left + link_length_1*sin_a1_left - link_length_5*cos_a2_left_left
             )
             # rod rear
             pivot_rear_y_left_left = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
+                constant_part_10*cos_a1_left + link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
             )
             centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
             rod_1_x_left = x - centre_1_x_left
@@ -644,90 +589,86 @@ def unrolled(k: Constants) -> Unrolled:
             rod_1_y_left = y - centre_1_y_left
             centre_2_x_left_left = (
                 (
-                    link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
-                    - link_length_2*pivot_rear_y_left_left*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_x_left_left - link_length_2*pivot_rear_x_left_left
+                    - link_length_2_times_swap_xy*pivot_rear_y_left_left
                 )
                 /link_length_3
             )
             rod_2_x_left_left = x - centre_2_x_left_left
             centre_2_y_left_left = (
                 (
-                    link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
-                    - link_length_2*pivot_rear_x_left_left*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_y_left_left - link_length_2*pivot_rear_y_left_left
+                    - link_length_2_times_swap_xy*pivot_rear_x_left_left
                 )
                 /link_length_3
             )
             rod_2_y_left_left = y - centre_2_y_left_left
             type2_arms_aligned_left_left = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
+                constant_part_11*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
                 /(
                     root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
+                        link_length_2_squared + pivot_upper_x_left*pivot_upper_x_left*swap_xy_squared_times_2
+                        + pivot_upper_x_left*pivot_upper_y_left*swap_xy_times_4
+                        + pivot_upper_y_left*pivot_upper_y_left*swap_xy_squared_times_2
+                        - pivot_upper_x_left*pivot_upper_x_left*swap_xy_times_2
+                        - pivot_upper_x_left*pivot_upper_y_left*swap_xy_squared_times_4
+                        - pivot_upper_y_left*pivot_upper_y_left*swap_xy_times_2
                     )
                     *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
-                        + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
-                        - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
-                        - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
+                        link_length_4_squared + pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy_squared_times_2
+                        + pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy_times_4
+                        + pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy_squared_times_2
+                        - pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy_times_2
+                        - pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy_squared_times_4
+                        - pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy_times_2
                     )
-                    *link_length_2
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_left_left = 0.0 if type2_arms_aligned_left_left >= min_type2_margin else 3.0
             # rod rear
             pivot_rear_x_left_right = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_right
+                constant_part_10*sin_a1_left + link_length_1*sin_a1_left - link_length_5*cos_a2_left_right
             )
             # rod rear
             pivot_rear_y_left_right = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
+                constant_part_10*cos_a1_left + link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
             )
             centre_2_x_left_right = (
                 (
-                    link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
-                    - link_length_2*pivot_rear_y_left_right*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_x_left_right - link_length_2*pivot_rear_x_left_right
+                    - link_length_2_times_swap_xy*pivot_rear_y_left_right
                 )
                 /link_length_3
             )
             rod_2_x_left_right = x - centre_2_x_left_right
             centre_2_y_left_right = (
                 (
-                    link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
-                    - link_length_2*pivot_rear_x_left_right*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_y_left_right - link_length_2*pivot_rear_y_left_right
+                    - link_length_2_times_swap_xy*pivot_rear_x_left_right
                 )
                 /link_length_3
             )
             rod_2_y_left_right = y - centre_2_y_left_right
             type2_arms_aligned_left_right = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
+                constant_part_11*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
                 /(
                     root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
+                        link_length_2_squared + pivot_upper_x_left*pivot_upper_x_left*swap_xy_squared_times_2
+                        + pivot_upper_x_left*pivot_upper_y_left*swap_xy_times_4
+                        + pivot_upper_y_left*pivot_upper_y_left*swap_xy_squared_times_2
+                        - pivot_upper_x_left*pivot_upper_x_left*swap_xy_times_2
+                        - pivot_upper_x_left*pivot_upper_y_left*swap_xy_squared_times_4
+                        - pivot_upper_y_left*pivot_upper_y_left*swap_xy_times_2
                     )
                     *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
-                        + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
-                        - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
-                        - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
+                        link_length_4_squared + pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy_squared_times_2
+                        + pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy_times_4
+                        + pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy_squared_times_2
+                        - pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy_times_2
+                        - pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy_squared_times_4
+                        - pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy_times_2
                     )
-                    *link_length_2
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -739,65 +680,45 @@ def unrolled(k: Constants) -> Unrolled:
         cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_left/divisor_a1
         along_a2_right = (
             (
-                link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1_right
-                - link_length_1*link_length_3*sin_a1_right
+                link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1_right
+                - link_length_1_times_link_length_3*sin_a1_right
             )
             /link_length_2
         )
         across_a2_right = (
             (
-                link_length_1*link_length_2*cos_a1_right + link_length_1*link_length_3*cos_a1_right
+                link_length_1_times_link_length_2*cos_a1_right + link_length_1_times_link_length_3*cos_a1_right
                 - link_length_2*span_rear_y
             )
             /link_length_2
         )
         # effective length that the angle turns
         effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
-        divisor_a2_right = effective_a2_right if effective_a2_right > 1e-9*link_length_5 else 1.0
-        swing_scale_a2_right = 2.0*divisor_a2_right*link_length_5  # a2: law of cosines in the rod rear equation
+        divisor_a2_right = effective_a2_right if effective_a2_right > link_length_5_times_shortest_link else 1.0
+        swing_scale_a2_right = divisor_a2_right*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_swing_a2_right = (
             (
-                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1_right
-                + 2.0*link_length_1*span_rear_x*sin_a1_right
-                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1_right/link_length_2
-                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1_right/link_length_2 - link_length_1*link_length_1
-                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+                constant_part_3*span_rear_y*cos_a1_right + constant_part_3*span_rear_x*sin_a1_right
+                + link_length_1_times_2*span_rear_y*cos_a1_right + link_length_1_times_2*span_rear_x*sin_a1_right
+                - constant_part_4 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
             )
             /swing_scale_a2_right
         )
         # kept as a product
         sine_square_a2_right = (
             (
-                2.0*divisor_a2_right*link_length_2*link_length_2*link_length_5
-                + link_length_1*link_length_1*link_length_2*link_length_2
-                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                + link_length_1*link_length_1*link_length_3*link_length_3
-                + link_length_2*link_length_2*link_length_5*link_length_5
-                + link_length_2*link_length_2*span_rear_x*span_rear_x
-                + link_length_2*link_length_2*span_rear_y*span_rear_y
-                - link_length_2*link_length_2*link_length_4*link_length_4
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_right
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_right
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_right
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_right
+                constant_part_5*divisor_a2_right + constant_part_6*span_rear_y*cos_a1_right
+                + constant_part_6*span_rear_x*sin_a1_right + constant_part_7*span_rear_y*cos_a1_right
+                + constant_part_7*span_rear_x*sin_a1_right - constant_part_8
+                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
             )
             *(
-                2.0*divisor_a2_right*link_length_2*link_length_2*link_length_5
-                + link_length_2*link_length_2*link_length_4*link_length_4
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_right
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_right
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_right
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_right
-                - link_length_1*link_length_1*link_length_2*link_length_2
-                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                - link_length_1*link_length_1*link_length_3*link_length_3
-                - link_length_2*link_length_2*link_length_5*link_length_5
-                - link_length_2*link_length_2*span_rear_x*span_rear_x
-                - link_length_2*link_length_2*span_rear_y*span_rear_y
+                constant_part_8 + constant_part_5*divisor_a2_right + link_length_2_squared*span_rear_x*span_rear_x
+                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_6*span_rear_y*cos_a1_right
+                - constant_part_6*span_rear_x*sin_a1_right - constant_part_7*span_rear_y*cos_a1_right
+                - constant_part_7*span_rear_x*sin_a1_right
             )
-            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2_right*swing_scale_a2_right)
+            /(constant_part_9*swing_scale_a2_right*swing_scale_a2_right)
         )
         sin_swing_a2_right_left = -(sqrt(sine_square_a2_right) if sine_square_a2_right > 0.0 else 0.0)
         cos_a2_right_left = (
@@ -816,18 +737,16 @@ def unrolled(k: Constants) -> Unrolled:
             across_a2_right*cos_swing_a2_right/divisor_a2_right
             - along_a2_right*sin_swing_a2_right_left/divisor_a2_right
         )
-        if sine_square_a2_right >= -1e-12 and effective_a2_right > 1e-9*link_length_5:
+        if sine_square_a2_right >= -1e-12 and effective_a2_right > link_length_5_times_shortest_link:
             pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
             pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
             # rod rear
             pivot_rear_x_right_left = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_left
+                constant_part_10*sin_a1_right + link_length_1*sin_a1_right - link_length_5*cos_a2_right_left
             )
             # rod rear
             pivot_rear_y_right_left = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
+                constant_part_10*cos_a1_right + link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
             )
             centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
             rod_1_x_right = x - centre_1_x_right
@@ -835,90 +754,86 @@ def unrolled(k: Constants) -> Unrolled:
             rod_1_y_right = y - centre_1_y_right
             centre_2_x_right_left = (
                 (
-                    link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
-                    - link_length_2*pivot_rear_y_right_left*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_x_right_left - link_length_2*pivot_rear_x_right_left
+                    - link_length_2_times_swap_xy*pivot_rear_y_right_left
                 )
                 /link_length_3
             )
             rod_2_x_right_left = x - centre_2_x_right_left
             centre_2_y_right_left = (
                 (
-                    link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
-                    - link_length_2*pivot_rear_x_right_left*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_y_right_left - link_length_2*pivot_rear_y_right_left
+                    - link_length_2_times_swap_xy*pivot_rear_x_right_left
                 )
                 /link_length_3
             )
             rod_2_y_right_left = y - centre_2_y_right_left
             type2_arms_aligned_right_left = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
+                constant_part_11*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
                 /(
                     root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
+                        link_length_2_squared + pivot_upper_x_right*pivot_upper_x_right*swap_xy_squared_times_2
+                        + pivot_upper_x_right*pivot_upper_y_right*swap_xy_times_4
+                        + pivot_upper_y_right*pivot_upper_y_right*swap_xy_squared_times_2
+                        - pivot_upper_x_right*pivot_upper_x_right*swap_xy_times_2
+                        - pivot_upper_x_right*pivot_upper_y_right*swap_xy_squared_times_4
+                        - pivot_upper_y_right*pivot_upper_y_right*swap_xy_times_2
                     )
                     *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
-                        + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
-                        - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
-                        - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
+                        link_length_4_squared + pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy_squared_times_2
+                        + pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy_times_4
+                        + pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy_squared_times_2
+                        - pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy_times_2
+                        - pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy_squared_times_4
+                        - pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy_times_2
                     )
-                    *link_length_2
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_right_left = 0.0 if type2_arms_aligned_right_left >= min_type2_margin else 3.0
             # rod rear
             pivot_rear_x_right_right = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_right
+                constant_part_10*sin_a1_right + link_length_1*sin_a1_right - link_length_5*cos_a2_right_right
             )
             # rod rear
             pivot_rear_y_right_right = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
+                constant_part_10*cos_a1_right + link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
             )
             centre_2_x_right_right = (
                 (
-                    link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
-                    - link_length_2*pivot_rear_y_right_right*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_x_right_right - link_length_2*pivot_rear_x_right_right
+                    - link_length_2_times_swap_xy*pivot_rear_y_right_right
                 )
                 /link_length_3
             )
             rod_2_x_right_right = x - centre_2_x_right_right
             centre_2_y_right_right = (
                 (
-                    link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
-                    - link_length_2*pivot_rear_x_right_right*swap_xy
+                    link_length_2_times_swap_xy*pivot_rear_y_right_right - link_length_2*pivot_rear_y_right_right
+                    - link_length_2_times_swap_xy*pivot_rear_x_right_right
                 )
                 /link_length_3
             )
             rod_2_y_right_right = y - centre_2_y_right_right
             type2_arms_aligned_right_right = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
+                constant_part_11*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
                 /(
                     root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
+                        link_length_2_squared + pivot_upper_x_right*pivot_upper_x_right*swap_xy_squared_times_2
+                        + pivot_upper_x_right*pivot_upper_y_right*swap_xy_times_4
+                        + pivot_upper_y_right*pivot_upper_y_right*swap_xy_squared_times_2
+                        - pivot_upper_x_right*pivot_upper_x_right*swap_xy_times_2
+                        - pivot_upper_x_right*pivot_upper_y_right*swap_xy_squared_times_4
+                        - pivot_upper_y_right*pivot_upper_y_right*swap_xy_times_2
                     )
                     *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
-                        + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
-                        - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
-                        - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
+                        link_length_4_squared + pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy_squared_times_2
+                        + pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy_times_4
+                        + pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy_squared_times_2
+                        - pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy_times_2
+                        - pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy_squared_times_4
+                        - pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy_times_2
                     )
-                    *link_length_2
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate
@@ -944,87 +859,66 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         sigma_t, sigma_w = signs
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*link_length_1):
+        if not (effective_a1 > link_length_1_times_shortest_link):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
-        swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
+        divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
+        swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         # kept as a product
         sine_square_a1 = (
-            (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_1 + link_length_2)
-            *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
+            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 + link_length_1_minus_link_length_2)
+            *(divisor_a1 + link_length_1_plus_link_length_2)*(divisor_a1 - link_length_1_minus_link_length_2)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return None
-        cos_swing_a1 = (
-            (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
-        )
+        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        # rod rear
-        span_rear_x = (
-            link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
-            - link_length_3*swap_xy*y/link_length_2
-        )
+        span_rear_x = constant_part_2*x - constant_part_2*y - link_length_3_by_link_length_2*x  # rod rear
         along_a2 = (
-            (link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1 - link_length_1*link_length_3*sin_a1)
+            (
+                link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1
+                - link_length_1_times_link_length_3*sin_a1
+            )
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        # rod rear
-        span_rear_y = (
-            link_length_3*swap_xy*y/link_length_2 - link_length_3*y/link_length_2
-            - link_length_3*swap_xy*x/link_length_2
-        )
+        span_rear_y = constant_part_2*y - constant_part_2*x - link_length_3_by_link_length_2*y  # rod rear
         across_a2 = (
-            (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
+            (
+                link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
+                - link_length_2*span_rear_y
+            )
             /link_length_2
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 1e-9*link_length_5):
+        if not (effective_a2 > link_length_5_times_shortest_link):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_5 else 1.0
-        swing_scale_a2 = 2.0*divisor_a2*link_length_5  # a2: law of cosines in the rod rear equation
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         # kept as a product
         sine_square_a2 = (
             (
-                2.0*divisor_a2*link_length_2*link_length_2*link_length_5
-                + link_length_1*link_length_1*link_length_2*link_length_2
-                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                + link_length_1*link_length_1*link_length_3*link_length_3
-                + link_length_2*link_length_2*link_length_5*link_length_5
-                + link_length_2*link_length_2*span_rear_x*span_rear_x
-                + link_length_2*link_length_2*span_rear_y*span_rear_y
-                - link_length_2*link_length_2*link_length_4*link_length_4
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1
+                constant_part_5*divisor_a2 + constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
+                + constant_part_7*span_rear_y*cos_a1 + constant_part_7*span_rear_x*sin_a1 - constant_part_8
+                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
             )
             *(
-                2.0*divisor_a2*link_length_2*link_length_2*link_length_5
-                + link_length_2*link_length_2*link_length_4*link_length_4
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1
-                - link_length_1*link_length_1*link_length_2*link_length_2
-                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                - link_length_1*link_length_1*link_length_3*link_length_3
-                - link_length_2*link_length_2*link_length_5*link_length_5
-                - link_length_2*link_length_2*span_rear_x*span_rear_x
-                - link_length_2*link_length_2*span_rear_y*span_rear_y
+                constant_part_8 + constant_part_5*divisor_a2 + link_length_2_squared*span_rear_x*span_rear_x
+                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_6*span_rear_y*cos_a1
+                - constant_part_6*span_rear_x*sin_a1 - constant_part_7*span_rear_y*cos_a1
+                - constant_part_7*span_rear_x*sin_a1
             )
-            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2*swing_scale_a2)
+            /(constant_part_9*swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
@@ -1033,53 +927,54 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
         cos_swing_a2 = (
             (
-                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1
-                + 2.0*link_length_1*span_rear_x*sin_a1
-                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1/link_length_2
-                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1/link_length_2 - link_length_1*link_length_1
-                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
+                + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
+                - constant_part_4 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
             )
             /swing_scale_a2
         )
         sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
-        # rod rear
-        pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
+        pivot_rear_x = constant_part_10*sin_a1 + link_length_1*sin_a1 - link_length_5*cos_a2  # rod rear
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
-        # rod rear
-        pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
+        pivot_rear_y = constant_part_10*cos_a1 + link_length_1*cos_a1 + link_length_5*sin_a2  # rod rear
         centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
         rod_1_x = x - centre_1_x
         centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
         rod_1_y = y - centre_1_y
         centre_2_x = (
-            (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
+            (
+                link_length_2_times_swap_xy*pivot_rear_x - link_length_2*pivot_rear_x
+                - link_length_2_times_swap_xy*pivot_rear_y
+            )
             /link_length_3
         )
         rod_2_x = x - centre_2_x
         centre_2_y = (
-            (link_length_2*pivot_rear_y*swap_xy - link_length_2*pivot_rear_y - link_length_2*pivot_rear_x*swap_xy)
+            (
+                link_length_2_times_swap_xy*pivot_rear_y - link_length_2*pivot_rear_y
+                - link_length_2_times_swap_xy*pivot_rear_x
+            )
             /link_length_3
         )
         rod_2_y = y - centre_2_y
         type2_arms_aligned = (
-            assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+            constant_part_11*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
             /(
                 root(
-                    link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-                    + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                    + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                    - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
+                    link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
+                    + pivot_upper_x*pivot_upper_y*swap_xy_times_4
+                    + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
+                    - pivot_upper_x*pivot_upper_x*swap_xy_times_2
+                    - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
+                    - pivot_upper_y*pivot_upper_y*swap_xy_times_2
                 )
                 *root(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
+                    link_length_4_squared + pivot_rear_x*pivot_rear_x*swap_xy_squared_times_2
+                    + pivot_rear_x*pivot_rear_y*swap_xy_times_4 + pivot_rear_y*pivot_rear_y*swap_xy_squared_times_2
+                    - pivot_rear_x*pivot_rear_x*swap_xy_times_2 - pivot_rear_x*pivot_rear_y*swap_xy_squared_times_4
+                    - pivot_rear_y*pivot_rear_y*swap_xy_times_2
                 )
-                *link_length_2
             )
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate

@@ -30,6 +30,10 @@ def unrolled(k: Constants) -> Unrolled:
     rail_y_2 = k.rail_y_2
     tcp_offset_1 = k.tcp_offset_1
     tcp_offset_2 = k.tcp_offset_2
+    machine_scale_times_plane = 1e-6*machine_scale
+    arm_length_1_squared_times_rounding = 1e-12*arm_length_1*arm_length_1
+    arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
+    constant_part = assembly_sign/(arm_length_1*arm_length_2)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -38,17 +42,17 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return 4*(2.0,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 4*(3.0,)
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length_1*arm_length_1):
+        if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
             return 4*(3.0,)
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length_2*arm_length_2):
+        if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
             return 4*(3.0,)
         span_1_x = x - tcp_offset_1  # rod 1
         a1_left = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
@@ -66,17 +70,13 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_1_x_left = a1_left + tcp_offset_1  # rod 1
             rod_1_x_left = x - pivot_1_x_left
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
-                type2_arms_aligned_left_right = (
-                    assembly_sign*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)/(arm_length_1*arm_length_2)
-                )
+                type2_arms_aligned_left_right = constant_part*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)
                 # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_left_right_2 = 0.0 if type2_arms_aligned_left_right >= min_type2_margin else 3.0
             else:
                 refusal_left_right_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
-                type2_arms_aligned_left_left = (
-                    assembly_sign*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)/(arm_length_1*arm_length_2)
-                )
+                type2_arms_aligned_left_left = constant_part*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)
                 # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_left_left_2 = 0.0 if type2_arms_aligned_left_left >= min_type2_margin else 3.0
             else:
@@ -90,17 +90,13 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
             rod_1_x_right = x - pivot_1_x_right
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
-                type2_arms_aligned_right_right = (
-                    assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)/(arm_length_1*arm_length_2)
-                )
+                type2_arms_aligned_right_right = constant_part*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)
                 # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_right_right_2 = 0.0 if type2_arms_aligned_right_right >= min_type2_margin else 3.0
             else:
                 refusal_right_right_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
-                type2_arms_aligned_right_left = (
-                    assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_left*span_1_y)/(arm_length_1*arm_length_2)
-                )
+                type2_arms_aligned_right_left = constant_part*(rod_1_x_right*span_2_y - rod_2_x_left*span_1_y)
                 # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_right_left_2 = 0.0 if type2_arms_aligned_right_left >= min_type2_margin else 3.0
             else:
@@ -119,17 +115,17 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 4*(None,)
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length_1*arm_length_1):
+        if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
             return 4*(None,)
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length_2*arm_length_2):
+        if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
             return 4*(None,)
         span_1_x = x - tcp_offset_1  # rod 1
         a1_left = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
@@ -139,9 +135,7 @@ def unrolled(k: Constants) -> Unrolled:
         a2_right = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x_right = a2_right - tcp_offset_2  # rod 2
         rod_2_x_right = x - pivot_2_x_right
-        type2_arms_aligned_left_right = (
-            assembly_sign*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)/(arm_length_1*arm_length_2)
-        )
+        type2_arms_aligned_left_right = constant_part*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = 0.0 if type2_arms_aligned_left_right >= min_type2_margin else 3.0
         axis_a1_left = a1_left + offset_a1
@@ -149,24 +143,18 @@ def unrolled(k: Constants) -> Unrolled:
         a1_right = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
         rod_1_x_right = x - pivot_1_x_right
-        type2_arms_aligned_right_right = (
-            assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)/(arm_length_1*arm_length_2)
-        )
+        type2_arms_aligned_right_right = constant_part*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = 0.0 if type2_arms_aligned_right_right >= min_type2_margin else 3.0
         axis_a1_right = a1_right + offset_a1
         a2_left = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x_left = a2_left - tcp_offset_2  # rod 2
         rod_2_x_left = x - pivot_2_x_left
-        type2_arms_aligned_left_left = (
-            assembly_sign*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)/(arm_length_1*arm_length_2)
-        )
+        type2_arms_aligned_left_left = constant_part*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = 0.0 if type2_arms_aligned_left_left >= min_type2_margin else 3.0
         axis_a2_left = a2_left + offset_a2
-        type2_arms_aligned_right_left = (
-            assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_left*span_1_y)/(arm_length_1*arm_length_2)
-        )
+        type2_arms_aligned_right_left = constant_part*(rod_1_x_right*span_2_y - rod_2_x_left*span_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = 0.0 if type2_arms_aligned_right_left >= min_type2_margin else 3.0
         return (
@@ -181,17 +169,17 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2 = signs
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         span_1_y = y - rail_y_1  # rod 1
         root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)  # a1: quadratic in the rod 1 equation
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length_1*arm_length_1):
+        if not (root_square_a1 >= -arm_length_1_squared_times_rounding):
             return None
         span_2_y = y - rail_y_2  # rod 2
         root_square_a2 = (arm_length_2 + span_2_y)*(arm_length_2 - span_2_y)  # a2: quadratic in the rod 2 equation
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length_2*arm_length_2):
+        if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
             return None
         span_1_x = x - tcp_offset_1  # rod 1
         a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
@@ -203,7 +191,7 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         rod_2_x = x - pivot_2_x
         rod_2_y = y - rail_y_2
-        type2_arms_aligned = assembly_sign*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(arm_length_1*arm_length_2)
+        type2_arms_aligned = constant_part*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

@@ -26,6 +26,9 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a1 = k.offset_a1
     offset_a2 = k.offset_a2
     span_1_x = k.span_1_x
+    machine_scale_times_plane = 1e-6*machine_scale
+    constant_part = 2.5e-13*arm_length*arm_length
+    assembly_sign_by_arm_length = assembly_sign/arm_length
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -34,13 +37,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return 1*(2.0,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 1*(3.0,)
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -2.5e-13*arm_length*arm_length):
+        if not (root_square_a2 >= -constant_part):
             return 1*(3.0,)
-        type2_flat = assembly_sign*y/arm_length
+        type2_flat = assembly_sign_by_arm_length*y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             return 1*(3.0,)
@@ -63,13 +66,13 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 1*(None,)
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -2.5e-13*arm_length*arm_length):
+        if not (root_square_a2 >= -constant_part):
             return 1*(None,)
-        type2_flat = assembly_sign*y/arm_length
+        type2_flat = assembly_sign_by_arm_length*y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             return 1*(None,)
@@ -86,13 +89,13 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -2.5e-13*arm_length*arm_length):
+        if not (root_square_a2 >= -constant_part):
             return None
-        type2_flat = assembly_sign*y/arm_length
+        type2_flat = assembly_sign_by_arm_length*y
         # flat: the other assembly mode, or too near to losing the plate
         if not (type2_flat >= min_type2_margin):
             return None

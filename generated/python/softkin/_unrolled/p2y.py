@@ -25,6 +25,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale = k.machine_scale
     offset_a1 = k.offset_a1
     offset_a2 = k.offset_a2
+    machine_scale_times_plane = 1e-6*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -33,7 +34,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return 1*(2.0,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 1*(3.0,)
         a1 = x + y  # a1, a2: affine in the x and y equations
         axis_a1 = a1 + offset_a1
@@ -63,7 +64,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 1*(None,)
         a1 = x + y  # a1, a2: affine in the x and y equations
         axis_a1 = a1 + offset_a1
@@ -77,7 +78,7 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         a1 = x + y  # a1, a2: affine in the x and y equations
         axis_a1 = a1 + offset_a1

@@ -31,6 +31,12 @@ def unrolled(k: Constants) -> Unrolled:
     scale_a2_from_a1 = k.scale_a2_from_a1
     single_a1 = k.single_a1
     single_a2 = k.single_a2
+    machine_scale_times_plane = 1e-6*machine_scale
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    scale_a2_from_a1_squared = scale_a2_from_a1*scale_a2_from_a1
+    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -40,39 +46,33 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
             return 2*(2.0,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 2*(3.0,)
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2_from_a1 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
-            /(scale_a2_from_a1*scale_a2_from_a1)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+            /scale_a2_from_a1_squared
         )
         # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return 2*(3.0,)
-        cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
+        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
         sin_a2_from_a1_right = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1_right = link_length_2*sin_a2_from_a1_right
             along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
             across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_right = (
-                sqrt(across_a1_right*across_a1_right + along_a1_right*along_a1_right)
-                if across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0
-                else 1.0
-            )
+            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
+            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
             cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
             sin_a1_right = across_a1_right/length_a1_right
             along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
             across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_left = (
-                sqrt(across_a1_left*across_a1_left + along_a1_left*along_a1_left)
-                if across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0
-                else 1.0
-            )
+            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
+            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
@@ -133,39 +133,33 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_a1, _ = reference
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 2*(None,)
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2_from_a1 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
-            /(scale_a2_from_a1*scale_a2_from_a1)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+            /scale_a2_from_a1_squared
         )
         # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return 2*(None,)
-        cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
+        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
         sin_a2_from_a1_right = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1_right = link_length_2*sin_a2_from_a1_right
             along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
             across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_right = (
-                sqrt(across_a1_right*across_a1_right + along_a1_right*along_a1_right)
-                if across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0
-                else 1.0
-            )
+            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
+            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
             cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
             sin_a1_right = across_a1_right/length_a1_right
             along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
             across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_left = (
-                sqrt(across_a1_left*across_a1_left + along_a1_left*along_a1_left)
-                if across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0
-                else 1.0
-            )
+            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
+            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
@@ -195,21 +189,21 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_elbow,) = signs
         ref_a1, _ = reference
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2_from_a1 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
-            /(scale_a2_from_a1*scale_a2_from_a1)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+            /scale_a2_from_a1_squared
         )
         # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return None
-        cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
+        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
         sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1
             along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations

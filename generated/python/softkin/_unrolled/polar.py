@@ -24,6 +24,8 @@ def unrolled(k: Constants) -> Unrolled:
     offset_c = k.offset_c
     offset_r = k.offset_r
     single_c = k.single_c
+    machine_scale_times_plane = 1e-6*machine_scale
+    machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -33,10 +35,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_c) <= 1e9):
             return 1*(2.0,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 1*(3.0,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        if radius_c > 1e-11*machine_scale:
+        if radius_c > machine_scale_times_free_angle:
             cos_c = x/radius_c  # its reference where it is free
             sin_c = y/radius_c
         else:
@@ -63,10 +65,10 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_c, _ = reference
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 1*(None,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        if radius_c > 1e-11*machine_scale:
+        if radius_c > machine_scale_times_free_angle:
             cos_c = x/radius_c  # its reference where it is free
             sin_c = y/radius_c
         else:
@@ -84,10 +86,10 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_c, _ = reference
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        if radius_c > 1e-11*machine_scale:
+        if radius_c > machine_scale_times_free_angle:
             cos_c = x/radius_c  # its reference where it is free
             sin_c = y/radius_c
         else:

@@ -27,6 +27,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_r = k.offset_r
     offset_z = k.offset_z
     single_c = k.single_c
+    machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -36,7 +37,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_c) <= 1e9):
             return 1*(2.0,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        if radius_c > 1e-11*machine_scale:
+        if radius_c > machine_scale_times_free_angle:
             cos_c = x/radius_c  # its reference where it is free
             sin_c = y/radius_c
         else:
@@ -67,7 +68,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_c, _, _ = reference
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        if radius_c > 1e-11*machine_scale:
+        if radius_c > machine_scale_times_free_angle:
             cos_c = x/radius_c  # its reference where it is free
             sin_c = y/radius_c
         else:
@@ -86,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_c, _, _ = reference
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        if radius_c > 1e-11*machine_scale:
+        if radius_c > machine_scale_times_free_angle:
             cos_c = x/radius_c  # its reference where it is free
             sin_c = y/radius_c
         else:

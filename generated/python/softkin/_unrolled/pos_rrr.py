@@ -39,6 +39,13 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
+    a2_squared_plus_effective_q3_2_squared = a2*a2 + effective_q3_2*effective_q3_2
+    a2_plus_effective_q3_2 = a2 + effective_q3_2
+    a2_minus_effective_q3_2 = a2 - effective_q3_2
+    swing_scale_q3_2_squared = swing_scale_q3_2*swing_scale_q3_2
+    a3_by_effective_q3_2 = a3/effective_q3_2
+    d4_by_effective_q3_2 = d4/effective_q3_2
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -52,12 +59,12 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(2.0,)
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
+        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 4*(3.0,)
-        if distance_q1 > 1e-11*machine_scale:
+        if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d3/divisor_q1
             sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
@@ -73,19 +80,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1_front = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
-        cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        cos_swing_q3_front = (reach_front*reach_front - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         # kept as a product
         sine_square_q3_front = (
-            (effective_q3_2 + reach_front - a2)*(a2 + effective_q3_2 + reach_front)
-            *(a2 + effective_q3_2 - reach_front)*(a2 + reach_front - effective_q3_2)
-            /(swing_scale_q3_2*swing_scale_q3_2)
+            (reach_front - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_front)
+            *(a2_plus_effective_q3_2 + reach_front)*(a2_plus_effective_q3_2 - reach_front)/swing_scale_q3_2_squared
         )
         sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
-        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3_2 - d4*sin_swing_q3_front_down/effective_q3_2
-        sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3_2 + d4*cos_swing_q3_front/effective_q3_2
-        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3_2 + d4*sin_swing_q3_front_down/effective_q3_2
-        sin_q3_front_up = d4*cos_swing_q3_front/effective_q3_2 - a3*sin_swing_q3_front_down/effective_q3_2
-        if reach_front > 1e-11*machine_scale:
+        cos_q3_front_down = a3_by_effective_q3_2*cos_swing_q3_front - d4_by_effective_q3_2*sin_swing_q3_front_down
+        sin_q3_front_down = a3_by_effective_q3_2*sin_swing_q3_front_down + d4_by_effective_q3_2*cos_swing_q3_front
+        cos_q3_front_up = a3_by_effective_q3_2*cos_swing_q3_front + d4_by_effective_q3_2*sin_swing_q3_front_down
+        sin_q3_front_up = d4_by_effective_q3_2*cos_swing_q3_front - a3_by_effective_q3_2*sin_swing_q3_front_down
+        if reach_front > machine_scale_times_free_angle:
             arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
             arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -93,11 +99,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_front_down = (
                 arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
             )
-            length_q2_front_down = (
-                sqrt(across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down)
-                if across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0
-                else 1.0
+            length_q2_squared_front_down = (
+                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
             )
+            length_q2_front_down = sqrt(length_q2_squared_front_down) if length_q2_squared_front_down > 0.0 else 1.0
             cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
             sin_q2_front_down = across_q2_front_down/length_q2_front_down
             arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
@@ -105,11 +110,8 @@ def unrolled(k: Constants) -> Unrolled:
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
             across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_front_up = (
-                sqrt(across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up)
-                if across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0
-                else 1.0
-            )
+            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
+            length_q2_front_up = sqrt(length_q2_squared_front_up) if length_q2_squared_front_up > 0.0 else 1.0
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
@@ -158,28 +160,25 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_front_up = 3.0  # limits of A2, limits of A3
         wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
         reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
-        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        cos_swing_q3_back = (reach_back*reach_back - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         # kept as a product
         sine_square_q3_back = (
-            (effective_q3_2 + reach_back - a2)*(a2 + effective_q3_2 + reach_back)*(a2 + effective_q3_2 - reach_back)
-            *(a2 + reach_back - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
+            (reach_back - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_back)
+            *(a2_plus_effective_q3_2 + reach_back)*(a2_plus_effective_q3_2 - reach_back)/swing_scale_q3_2_squared
         )
         sin_swing_q3_back_down = -(sqrt(sine_square_q3_back) if sine_square_q3_back > 0.0 else 0.0)
-        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3_2 - d4*sin_swing_q3_back_down/effective_q3_2
-        sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3_2 + d4*cos_swing_q3_back/effective_q3_2
-        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3_2 + d4*sin_swing_q3_back_down/effective_q3_2
-        sin_q3_back_up = d4*cos_swing_q3_back/effective_q3_2 - a3*sin_swing_q3_back_down/effective_q3_2
-        if reach_back > 1e-11*machine_scale:
+        cos_q3_back_down = a3_by_effective_q3_2*cos_swing_q3_back - d4_by_effective_q3_2*sin_swing_q3_back_down
+        sin_q3_back_down = a3_by_effective_q3_2*sin_swing_q3_back_down + d4_by_effective_q3_2*cos_swing_q3_back
+        cos_q3_back_up = a3_by_effective_q3_2*cos_swing_q3_back + d4_by_effective_q3_2*sin_swing_q3_back_down
+        sin_q3_back_up = d4_by_effective_q3_2*cos_swing_q3_back - a3_by_effective_q3_2*sin_swing_q3_back_down
+        if reach_back > machine_scale_times_free_angle:
             arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
             arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
             across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_back_down = (
-                sqrt(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down)
-                if across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0
-                else 1.0
-            )
+            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
+            length_q2_back_down = sqrt(length_q2_squared_back_down) if length_q2_squared_back_down > 0.0 else 1.0
             cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
             sin_q2_back_down = across_q2_back_down/length_q2_back_down
             arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
@@ -187,11 +186,8 @@ def unrolled(k: Constants) -> Unrolled:
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
             across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_back_up = (
-                sqrt(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up)
-                if across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0
-                else 1.0
-            )
+            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
+            length_q2_back_up = sqrt(length_q2_squared_back_up) if length_q2_squared_back_up > 0.0 else 1.0
             cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
             sin_q2_back_up = across_q2_back_up/length_q2_back_up
         else:
@@ -252,12 +248,12 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, _ = reference
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
+        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 4*(None,)
-        if distance_q1 > 1e-11*machine_scale:
+        if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d3/divisor_q1
             sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
@@ -275,17 +271,16 @@ def unrolled(k: Constants) -> Unrolled:
         reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3_front = (
-            (effective_q3_2 + reach_front - a2)*(a2 + effective_q3_2 + reach_front)
-            *(a2 + effective_q3_2 - reach_front)*(a2 + reach_front - effective_q3_2)
-            /(swing_scale_q3_2*swing_scale_q3_2)
+            (reach_front - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_front)
+            *(a2_plus_effective_q3_2 + reach_front)*(a2_plus_effective_q3_2 - reach_front)/swing_scale_q3_2_squared
         )
-        cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        cos_swing_q3_front = (reach_front*reach_front - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
-        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3_2 - d4*sin_swing_q3_front_down/effective_q3_2
-        sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3_2 + d4*cos_swing_q3_front/effective_q3_2
-        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3_2 + d4*sin_swing_q3_front_down/effective_q3_2
-        sin_q3_front_up = d4*cos_swing_q3_front/effective_q3_2 - a3*sin_swing_q3_front_down/effective_q3_2
-        if reach_front > 1e-11*machine_scale:
+        cos_q3_front_down = a3_by_effective_q3_2*cos_swing_q3_front - d4_by_effective_q3_2*sin_swing_q3_front_down
+        sin_q3_front_down = a3_by_effective_q3_2*sin_swing_q3_front_down + d4_by_effective_q3_2*cos_swing_q3_front
+        cos_q3_front_up = a3_by_effective_q3_2*cos_swing_q3_front + d4_by_effective_q3_2*sin_swing_q3_front_down
+        sin_q3_front_up = d4_by_effective_q3_2*cos_swing_q3_front - a3_by_effective_q3_2*sin_swing_q3_front_down
+        if reach_front > machine_scale_times_free_angle:
             arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
             arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
@@ -293,11 +288,10 @@ def unrolled(k: Constants) -> Unrolled:
             across_q2_front_down = (
                 arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
             )
-            length_q2_front_down = (
-                sqrt(across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down)
-                if across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down > 0.0
-                else 1.0
+            length_q2_squared_front_down = (
+                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
             )
+            length_q2_front_down = sqrt(length_q2_squared_front_down) if length_q2_squared_front_down > 0.0 else 1.0
             cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
             sin_q2_front_down = across_q2_front_down/length_q2_front_down
             arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
@@ -305,11 +299,8 @@ def unrolled(k: Constants) -> Unrolled:
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
             across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_front_up = (
-                sqrt(across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up)
-                if across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up > 0.0
-                else 1.0
-            )
+            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
+            length_q2_front_up = sqrt(length_q2_squared_front_up) if length_q2_squared_front_up > 0.0 else 1.0
             cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
             sin_q2_front_up = across_q2_front_up/length_q2_front_up
         else:
@@ -322,26 +313,23 @@ def unrolled(k: Constants) -> Unrolled:
         reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3_back = (
-            (effective_q3_2 + reach_back - a2)*(a2 + effective_q3_2 + reach_back)*(a2 + effective_q3_2 - reach_back)
-            *(a2 + reach_back - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
+            (reach_back - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_back)
+            *(a2_plus_effective_q3_2 + reach_back)*(a2_plus_effective_q3_2 - reach_back)/swing_scale_q3_2_squared
         )
-        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        cos_swing_q3_back = (reach_back*reach_back - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         sin_swing_q3_back_down = -(sqrt(sine_square_q3_back) if sine_square_q3_back > 0.0 else 0.0)
-        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3_2 - d4*sin_swing_q3_back_down/effective_q3_2
-        sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3_2 + d4*cos_swing_q3_back/effective_q3_2
-        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3_2 + d4*sin_swing_q3_back_down/effective_q3_2
-        sin_q3_back_up = d4*cos_swing_q3_back/effective_q3_2 - a3*sin_swing_q3_back_down/effective_q3_2
-        if reach_back > 1e-11*machine_scale:
+        cos_q3_back_down = a3_by_effective_q3_2*cos_swing_q3_back - d4_by_effective_q3_2*sin_swing_q3_back_down
+        sin_q3_back_down = a3_by_effective_q3_2*sin_swing_q3_back_down + d4_by_effective_q3_2*cos_swing_q3_back
+        cos_q3_back_up = a3_by_effective_q3_2*cos_swing_q3_back + d4_by_effective_q3_2*sin_swing_q3_back_down
+        sin_q3_back_up = d4_by_effective_q3_2*cos_swing_q3_back - a3_by_effective_q3_2*sin_swing_q3_back_down
+        if reach_back > machine_scale_times_free_angle:
             arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
             arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
             across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_back_down = (
-                sqrt(across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down)
-                if across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down > 0.0
-                else 1.0
-            )
+            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
+            length_q2_back_down = sqrt(length_q2_squared_back_down) if length_q2_squared_back_down > 0.0 else 1.0
             cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
             sin_q2_back_down = across_q2_back_down/length_q2_back_down
             arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
@@ -349,11 +337,8 @@ def unrolled(k: Constants) -> Unrolled:
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
             across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_back_up = (
-                sqrt(across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up)
-                if across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up > 0.0
-                else 1.0
-            )
+            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
+            length_q2_back_up = sqrt(length_q2_squared_back_up) if length_q2_squared_back_up > 0.0 else 1.0
             cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
             sin_q2_back_up = across_q2_back_up/length_q2_back_up
         else:
@@ -388,12 +373,12 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, _ = reference
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
+        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return None
-        if distance_q1 > 1e-11*machine_scale:
+        if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d3/divisor_q1
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
             cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
@@ -407,17 +392,17 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (effective_q3_2 + reach - a2)*(a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)
-            *(a2 + reach - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
+            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
+            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
-        sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
-        if reach > 1e-11*machine_scale:
+        cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3
+        sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = d4*cos_q3 - a3*sin_q3
             arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
             # q2: linear pair in the x_from_q1 and y_from_q1 equations

@@ -32,6 +32,12 @@ def unrolled(k: Constants) -> Unrolled:
     scale_a2 = k.scale_a2
     single_a1 = k.single_a1
     single_a2 = k.single_a2
+    arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
+    arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
+    scale_a2_squared = scale_a2*scale_a2
+    constant_part = arm_length_1*arm_length_1 + arm_length_2*arm_length_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
+    offset_a2_times_2 = 2.0*offset_a2
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -43,8 +49,8 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
-            *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
+            (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
+            *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
@@ -53,27 +59,21 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return 2*(3.0,)
-        cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
             arm_across_a1_right = arm_length_2*sin_a2_right
             along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
             across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_right = (
-                sqrt(across_a1_right*across_a1_right + along_a1_right*along_a1_right)
-                if across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0
-                else 1.0
-            )
+            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
+            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
             cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
             sin_a1_right = across_a1_right/length_a1_right
             along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
             across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_left = (
-                sqrt(across_a1_left*across_a1_left + along_a1_left*along_a1_left)
-                if across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0
-                else 1.0
-            )
+            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
+            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
@@ -101,7 +101,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
         # limits of A1, limits of A2
@@ -124,33 +124,27 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
-            *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
+            (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
+            *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
-        cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
             arm_across_a1_right = arm_length_2*sin_a2_right
             along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
             across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_right = (
-                sqrt(across_a1_right*across_a1_right + along_a1_right*along_a1_right)
-                if across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0
-                else 1.0
-            )
+            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
+            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
             cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
             sin_a1_right = across_a1_right/length_a1_right
             along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
             across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_left = (
-                sqrt(across_a1_left*across_a1_left + along_a1_left*along_a1_left)
-                if across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0
-                else 1.0
-            )
+            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
+            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
@@ -163,7 +157,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2)/DEGREE  # A2: its turn
         axis_z = offset_z + z
         axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
-        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2)/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
         return (
             (axis_a1_right, axis_a2_right, axis_z),
             (axis_a1_left, axis_a2_left, axis_z),
@@ -177,15 +171,15 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
-            *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
+            (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
+            *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
             arm_across_a1 = arm_length_2*sin_a2
             along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations

@@ -38,6 +38,12 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     single_a4 = k.single_a4
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    scale_a3_squared = scale_a3*scale_a3
+    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
+    offset_a3_times_2 = 2.0*offset_a3
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -76,8 +82,8 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
@@ -86,28 +92,22 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3.0,)
-        cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
+        cos_a3 = (reach*reach - constant_part)/scale_a3
         sin_a3_right = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2_right = link_length_2*sin_a3_right
             # a2: linear pair in the x and y equations
             along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
             across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-            length_a2_right = (
-                sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
-                if across_a2_right*across_a2_right + along_a2_right*along_a2_right > 0.0
-                else 1.0
-            )
+            length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
+            length_a2_right = sqrt(length_a2_squared_right) if length_a2_squared_right > 0.0 else 1.0
             cos_a2_right = along_a2_right/length_a2_right  # its reference where it is free
             sin_a2_right = across_a2_right/length_a2_right
             along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
             across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
-            length_a2_left = (
-                sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
-                if across_a2_left*across_a2_left + along_a2_left*along_a2_left > 0.0
-                else 1.0
-            )
+            length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
+            length_a2_left = sqrt(length_a2_squared_left) if length_a2_squared_left > 0.0 else 1.0
             cos_a2_left = along_a2_left/length_a2_left  # its reference where it is free
             sin_a2_left = across_a2_left/length_a2_left
         else:
@@ -143,7 +143,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
-        axis_a3_left = offset_a3 + arctan2(-sin_a3_right, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3_left = offset_a3_times_2 - axis_a3_right  # A3: its turn
         if not -180.000000001 <= axis_a3_left - open_a3 < 179.999999999:
             axis_a3_left = nearest_period(axis_a3_left, open_a3)
         cos_a23_left = cos_a2_left*cos_a3 + sin_a2_left*sin_a3_right
@@ -184,34 +184,28 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 2*(None,)
-        cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
+        cos_a3 = (reach*reach - constant_part)/scale_a3
         sin_a3_right = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2_right = link_length_2*sin_a3_right
             # a2: linear pair in the x and y equations
             along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
             across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-            length_a2_right = (
-                sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
-                if across_a2_right*across_a2_right + along_a2_right*along_a2_right > 0.0
-                else 1.0
-            )
+            length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
+            length_a2_right = sqrt(length_a2_squared_right) if length_a2_squared_right > 0.0 else 1.0
             cos_a2_right = along_a2_right/length_a2_right  # its reference where it is free
             sin_a2_right = across_a2_right/length_a2_right
             along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
             across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
-            length_a2_left = (
-                sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
-                if across_a2_left*across_a2_left + along_a2_left*along_a2_left > 0.0
-                else 1.0
-            )
+            length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
+            length_a2_left = sqrt(length_a2_squared_left) if length_a2_squared_left > 0.0 else 1.0
             cos_a2_left = along_a2_left/length_a2_left  # its reference where it is free
             sin_a2_left = across_a2_left/length_a2_left
         else:
@@ -229,7 +223,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a4_right = cos_a23_right*sin_heading - cos_heading*sin_a23_right
         axis_a4_right = offset_a4 + arctan2(sin_a4_right, cos_a4_right)/DEGREE  # A4: its turn
         axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)/DEGREE  # A2: its turn
-        axis_a3_left = offset_a3 + arctan2(-sin_a3_right, cos_a3)/DEGREE  # A3: its turn
+        axis_a3_left = offset_a3_times_2 - axis_a3_right  # A3: its turn
         cos_a23_left = cos_a2_left*cos_a3 + sin_a2_left*sin_a3_right
         sin_a23_left = cos_a3*sin_a2_left - cos_a2_left*sin_a3_right
         cos_a4_left = cos_a23_left*cos_heading + sin_a23_left*sin_heading  # a4: what the sum a234 leaves
@@ -259,15 +253,15 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return None
-        cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
+        cos_a3 = (reach*reach - constant_part)/scale_a3
         sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
             along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations

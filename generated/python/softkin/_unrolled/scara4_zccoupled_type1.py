@@ -38,6 +38,13 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a4 = k.single_a4
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    scale_a2_squared = scale_a2*scale_a2
+    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
+    pitch_zc_by_360 = pitch_zc/360.0
+    offset_a2_times_2 = 2.0*offset_a2
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -71,33 +78,27 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
-        cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
             along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
             across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_right = (
-                sqrt(across_a1_right*across_a1_right + along_a1_right*along_a1_right)
-                if across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0
-                else 1.0
-            )
+            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
+            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
             cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
             sin_a1_right = across_a1_right/length_a1_right
             along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
             across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_left = (
-                sqrt(across_a1_left*across_a1_left + along_a1_left*along_a1_left)
-                if across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0
-                else 1.0
-            )
+            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
+            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
@@ -127,7 +128,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
         a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3_right = z + a4_right*pitch_zc/(360.0*DEGREE)  # a3: affine in the z equation
+        a3_right = z + a4_right*pitch_zc_by_360/DEGREE  # a3: affine in the z equation
         axis_a3_right = a3_right + offset_a3
         # limits of A1, limits of A2, limits of A3, limits of A4
         refusal_right = (
@@ -140,7 +141,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
         cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
@@ -152,7 +153,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
         a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3_left = z + a4_left*pitch_zc/(360.0*DEGREE)  # a3: affine in the z equation
+        a3_left = z + a4_left*pitch_zc_by_360/DEGREE  # a3: affine in the z equation
         axis_a3_left = a3_left + offset_a3
         # limits of A1, limits of A2, limits of A3, limits of A4
         refusal_left = (
@@ -180,33 +181,27 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
-        cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
             along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
             across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_right = (
-                sqrt(across_a1_right*across_a1_right + along_a1_right*along_a1_right)
-                if across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0
-                else 1.0
-            )
+            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
+            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
             cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
             sin_a1_right = across_a1_right/length_a1_right
             along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
             across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_left = (
-                sqrt(across_a1_left*across_a1_left + along_a1_left*along_a1_left)
-                if across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0
-                else 1.0
-            )
+            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
+            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
@@ -227,10 +222,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a4_right = cos_a12_right*sin_heading - cos_heading*sin_a12_right
         axis_a4_right = offset_a4 + arctan2(sin_a4_right, cos_a4_right)/DEGREE  # A4: its turn
         a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3_right = z + a4_right*pitch_zc/(360.0*DEGREE)  # a3: affine in the z equation
+        a3_right = z + a4_right*pitch_zc_by_360/DEGREE  # a3: affine in the z equation
         axis_a3_right = a3_right + offset_a3
         axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
-        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2)/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
         cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
         sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
         # a4: linear pair in the cosine of the heading and sine of the heading equations
@@ -238,7 +233,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a4_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
         axis_a4_left = offset_a4 + arctan2(sin_a4_left, cos_a4_left)/DEGREE  # A4: its turn
         a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3_left = z + a4_left*pitch_zc/(360.0*DEGREE)  # a3: affine in the z equation
+        a3_left = z + a4_left*pitch_zc_by_360/DEGREE  # a3: affine in the z equation
         axis_a3_left = a3_left + offset_a3
         return (
             (axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right),
@@ -259,15 +254,15 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
@@ -295,7 +290,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a4 = cos_a12*sin_heading - cos_heading*sin_a12
         axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4)/DEGREE  # A4: its turn
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc/(360.0*DEGREE)  # a3: affine in the z equation
+        a3 = z + a4*pitch_zc_by_360/DEGREE  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 

@@ -42,6 +42,12 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
+    machine_scale_times_plane = 1e-6*machine_scale
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    scale_a2_squared = scale_a2*scale_a2
+    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -73,7 +79,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2*(3.0,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 2*(3.0,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
@@ -83,34 +89,28 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
-        cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
             # a1: linear pair in the x and y equations
             along_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
             across_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
-            length_a1_right = (
-                sqrt(across_a1_right*across_a1_right + along_a1_right*along_a1_right)
-                if across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0
-                else 1.0
-            )
+            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
+            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
             cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
             sin_a1_right = across_a1_right/length_a1_right
             along_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y  # a1: linear pair in the x and y equations
             across_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
-            length_a1_left = (
-                sqrt(across_a1_left*across_a1_left + along_a1_left*along_a1_left)
-                if across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0
-                else 1.0
-            )
+            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
+            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
@@ -223,7 +223,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2*(None,)
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return 2*(None,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
@@ -233,34 +233,28 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
-        cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
             # a1: linear pair in the x and y equations
             along_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
             across_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
-            length_a1_right = (
-                sqrt(across_a1_right*across_a1_right + along_a1_right*along_a1_right)
-                if across_a1_right*across_a1_right + along_a1_right*along_a1_right > 0.0
-                else 1.0
-            )
+            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
+            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
             cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
             sin_a1_right = across_a1_right/length_a1_right
             along_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y  # a1: linear pair in the x and y equations
             across_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
-            length_a1_left = (
-                sqrt(across_a1_left*across_a1_left + along_a1_left*along_a1_left)
-                if across_a1_left*across_a1_left + along_a1_left*along_a1_left > 0.0
-                else 1.0
-            )
+            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
+            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
             cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
             sin_a1_left = across_a1_left/length_a1_left
         else:
@@ -314,7 +308,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return None
         # z of a planar machine
-        if not (abs(z) <= 1e-6*machine_scale):
+        if not (abs(z) <= machine_scale_times_plane):
             return None
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
         cos_heading = heading_along/heading_divisor
@@ -324,15 +318,15 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach > 1e-11*machine_scale:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations

@@ -40,6 +40,15 @@ def unrolled(k: Constants) -> Unrolled:
     rail_y_2 = k.rail_y_2
     rail_y_3 = k.rail_y_3
     tcp_displacement = k.tcp_displacement
+    constant_part = rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1
+    constant_part_2 = rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1
+    arm_length_squared = arm_length*arm_length
+    arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
+    constant_part_3 = rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2
+    constant_part_4 = rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2
+    constant_part_5 = rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3
+    constant_part_6 = rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3
+    assembly_sign_by_constant_part = assembly_sign/(arm_length*arm_length*arm_length)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -47,26 +56,26 @@ def unrolled(k: Constants) -> Unrolled:
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return 8*(2.0,)
-        span_1_x = x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
-        span_1_y = y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
+        span_1_x = constant_part + x  # rod 1
+        span_1_y = constant_part_2 + y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
+        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a1 >= -arm_length_squared_times_rounding):
             return 8*(3.0,)
-        span_2_x = x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
-        span_2_y = y + rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
+        span_2_x = constant_part_3 + x  # rod 2
+        span_2_y = constant_part_4 + y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
+        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a2 >= -arm_length_squared_times_rounding):
             return 8*(3.0,)
-        span_3_x = x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
-        span_3_y = y + rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
+        span_3_x = constant_part_5 + x  # rod 3
+        span_3_y = constant_part_6 + y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
+        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
-        if not (root_square_a3 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a3 >= -arm_length_squared_times_rounding):
             return 8*(3.0,)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
@@ -93,12 +102,11 @@ def unrolled(k: Constants) -> Unrolled:
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_above_above_above = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
                             - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
                         )
-                        /(arm_length*arm_length*arm_length)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_above_above_2 = 0.0 if type2_rods_coplanar_above_above_above >= min_type2_margin else 3.0
@@ -106,12 +114,11 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_above_above_below = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
                             - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_above*rod_2_y*rod_3_x
                         )
-                        /(arm_length*arm_length*arm_length)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_above_below_2 = 0.0 if type2_rods_coplanar_above_above_below >= min_type2_margin else 3.0
@@ -123,12 +130,11 @@ def unrolled(k: Constants) -> Unrolled:
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_above_below_above = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
                             - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
                         )
-                        /(arm_length*arm_length*arm_length)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_below_above_2 = 0.0 if type2_rods_coplanar_above_below_above >= min_type2_margin else 3.0
@@ -136,12 +142,11 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_above_below_below = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
                             - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_above*rod_2_y*rod_3_x
                         )
-                        /(arm_length*arm_length*arm_length)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_below_below_2 = 0.0 if type2_rods_coplanar_above_below_below >= min_type2_margin else 3.0
@@ -162,12 +167,11 @@ def unrolled(k: Constants) -> Unrolled:
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_below_above_above = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
                             - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
                         )
-                        /(arm_length*arm_length*arm_length)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_above_above_2 = 0.0 if type2_rods_coplanar_below_above_above >= min_type2_margin else 3.0
@@ -175,12 +179,11 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_below_above_below = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
                             - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
                         )
-                        /(arm_length*arm_length*arm_length)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_above_below_2 = 0.0 if type2_rods_coplanar_below_above_below >= min_type2_margin else 3.0
@@ -192,12 +195,11 @@ def unrolled(k: Constants) -> Unrolled:
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_below_below_above = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
                             - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
                         )
-                        /(arm_length*arm_length*arm_length)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_below_above_2 = 0.0 if type2_rods_coplanar_below_below_above >= min_type2_margin else 3.0
@@ -205,12 +207,11 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_below_below_below = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
                             - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
                         )
-                        /(arm_length*arm_length*arm_length)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_below_below_2 = 0.0 if type2_rods_coplanar_below_below_below >= min_type2_margin else 3.0
@@ -270,26 +271,26 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
-        span_1_y = y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
+        span_1_x = constant_part + x  # rod 1
+        span_1_y = constant_part_2 + y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
+        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a1 >= -arm_length_squared_times_rounding):
             return 8*(None,)
-        span_2_x = x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
-        span_2_y = y + rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
+        span_2_x = constant_part_3 + x  # rod 2
+        span_2_y = constant_part_4 + y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
+        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a2 >= -arm_length_squared_times_rounding):
             return 8*(None,)
-        span_3_x = x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
-        span_3_y = y + rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
+        span_3_x = constant_part_5 + x  # rod 3
+        span_3_y = constant_part_6 + y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
+        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
-        if not (root_square_a3 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a3 >= -arm_length_squared_times_rounding):
             return 8*(None,)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
@@ -304,12 +305,11 @@ def unrolled(k: Constants) -> Unrolled:
         a3_above = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
         rod_3_z_above = z - a3_above
         type2_rods_coplanar_above_above_above = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
                 - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
             )
-            /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = 0.0 if type2_rods_coplanar_above_above_above >= min_type2_margin else 3.0
@@ -319,12 +319,11 @@ def unrolled(k: Constants) -> Unrolled:
         a1_below = z - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         rod_1_z_below = z - a1_below
         type2_rods_coplanar_below_above_above = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
                 - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
             )
-            /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0.0 if type2_rods_coplanar_below_above_above >= min_type2_margin else 3.0
@@ -332,66 +331,60 @@ def unrolled(k: Constants) -> Unrolled:
         a2_below = z - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         rod_2_z_below = z - a2_below
         type2_rods_coplanar_above_below_above = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
                 - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
             )
-            /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_above = 0.0 if type2_rods_coplanar_above_below_above >= min_type2_margin else 3.0
         axis_a2_below = a2_below + offset_a2
         type2_rods_coplanar_below_below_above = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
                 - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
             )
-            /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = 0.0 if type2_rods_coplanar_below_below_above >= min_type2_margin else 3.0
         a3_below = z - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
         rod_3_z_below = z - a3_below
         type2_rods_coplanar_above_above_below = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
                 - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_above*rod_2_y*rod_3_x
             )
-            /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = 0.0 if type2_rods_coplanar_above_above_below >= min_type2_margin else 3.0
         axis_a3_below = a3_below + offset_a3
         type2_rods_coplanar_below_above_below = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
                 - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
             )
-            /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_below = 0.0 if type2_rods_coplanar_below_above_below >= min_type2_margin else 3.0
         type2_rods_coplanar_above_below_below = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
                 - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_above*rod_2_y*rod_3_x
             )
-            /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = 0.0 if type2_rods_coplanar_above_below_below >= min_type2_margin else 3.0
         type2_rods_coplanar_below_below_below = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
                 - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
             )
-            /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = 0.0 if type2_rods_coplanar_below_below_below >= min_type2_margin else 3.0
@@ -410,26 +403,26 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
-        span_1_x = x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
-        span_1_y = y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
+        span_1_x = constant_part + x  # rod 1
+        span_1_y = constant_part_2 + y  # rod 1
         # a1: quadratic in the rod 1 equation
-        root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
+        root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
-        if not (root_square_a1 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a1 >= -arm_length_squared_times_rounding):
             return None
-        span_2_x = x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
-        span_2_y = y + rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
+        span_2_x = constant_part_3 + x  # rod 2
+        span_2_y = constant_part_4 + y  # rod 2
         # a2: quadratic in the rod 2 equation
-        root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
+        root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
-        if not (root_square_a2 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a2 >= -arm_length_squared_times_rounding):
             return None
-        span_3_x = x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
-        span_3_y = y + rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
+        span_3_x = constant_part_5 + x  # rod 3
+        span_3_y = constant_part_6 + y  # rod 3
         # a3: quadratic in the rod 3 equation
-        root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
+        root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
-        if not (root_square_a3 >= -1e-12*arm_length*arm_length):
+        if not (root_square_a3 >= -arm_length_squared_times_rounding):
             return None
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
@@ -444,12 +437,11 @@ def unrolled(k: Constants) -> Unrolled:
         a3 = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x*rod_2_y*rod_3_z + rod_1_y*rod_2_z*rod_3_x + rod_1_z*rod_2_x*rod_3_y - rod_1_x*rod_2_z*rod_3_y
                 - rod_1_y*rod_2_x*rod_3_z - rod_1_z*rod_2_y*rod_3_x
             )
-            /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):

@@ -38,6 +38,26 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     stewart_radius = k.stewart_radius
+    arm_1_radius_minus_constant_part = arm_1_radius - root(stewart_radius*stewart_radius - 0.25*distance*distance)
+    constant_part = 0.25*distance*distance - stewart_radius*stewart_radius
+    arm_1_radius_times_2 = 2.0*arm_1_radius
+    arm_length_1_times_2 = 2.0*arm_length_1
+    constant_part_2 = (
+        arm_1_radius*arm_1_radius + 2.0*arm_1_radius*arm_length_1 + arm_length_1*arm_length_1
+        + stewart_radius*stewart_radius - arm_length_2*arm_length_2 - 0.25*distance*distance
+    )
+    arm_length_1_times_shortest_link = 1e-9*arm_length_1
+    constant_part_3 = arm_length_1*arm_length_1 - arm_length_2*arm_length_2
+    constant_part_4 = 0.5*arm_1_radius - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
+    constant_part_5 = (
+        0.5*root(3.0)*arm_1_radius - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
+    )
+    constant_part_6 = 5e-10*arm_length_1
+    constant_part_7 = 0.5/arm_length_2
+    constant_part_by_2_by_arm_length_2 = 0.5*root(3.0)/arm_length_2
+    arm_length_1_by_2 = 0.5*arm_length_1
+    constant_part_times_arm_length_1_by_2 = 0.5*root(3.0)*arm_length_1
+    assembly_sign_by_constant_part = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -49,89 +69,62 @@ def unrolled(k: Constants) -> Unrolled:
             and abs(ref_a3) <= 1e9
         ):
             return 8*(2.0,)
-        span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
+        span_1_x = arm_1_radius_minus_constant_part + x  # rod 1
+        span_1_z_squared = -constant_part
         # rod 1
         span_1_z = (
             z
             - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
         )
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*arm_length_1):
+        if not (effective_a1 > arm_length_1_times_shortest_link):
             return 8*(3.0,)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
-        swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
+        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
+        swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (
-                2.0*arm_length_1*divisor_a1 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1
-                - divisor_a1*divisor_a1 - y*y
-            )
-            *(
-                arm_length_1*arm_length_1 + 2.0*arm_length_1*divisor_a1 + divisor_a1*divisor_a1 + y*y
-                - arm_length_2*arm_length_2
-            )
+            (constant_part_3 + arm_length_1_times_2*divisor_a1 + divisor_a1*divisor_a1 + y*y)
+            *(arm_length_1_times_2*divisor_a1 - constant_part_3 - divisor_a1*divisor_a1 - y*y)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(3.0,)
-        span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
-        # rod 2
-        span_2_y = (
-            y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        span_2_x = x - constant_part_4  # rod 2
+        span_2_y = constant_part_5 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 5e-10*arm_length_1):
+        if not (effective_a2 > constant_part_6):
             return 8*(3.0,)
-        divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > constant_part_6 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (
-                arm_length_1*divisor_a2 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_2_y*span_2_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_2_y*span_2_y - arm_length_2*arm_length_2
-            )
+            (constant_part_3 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)
+            *(arm_length_1*divisor_a2 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_2_y*span_2_y)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(3.0,)
-        # rod 3
-        span_3_y = (
-            y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        span_3_y = y - constant_part_5  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 5e-10*arm_length_1):
+        if not (effective_a3 > constant_part_6):
             return 8*(3.0,)
-        divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > constant_part_6 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (
-                arm_length_1*divisor_a3 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_3_y*span_3_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_3_y*span_3_y - arm_length_2*arm_length_2
-            )
+            (constant_part_3 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)
+            *(arm_length_1*divisor_a3 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_3_y*span_3_y)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
@@ -141,79 +134,45 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(3.0,)
         # ball joint of rod 2
-        if not (abs(0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_7*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
         # ball joint of rod 3
-        if not (abs(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_7*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
-        cos_swing_a1 = (
-            (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
-        )
+        cos_swing_a1 = (-constant_part_3 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
         sin_swing_a1_outward = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
         cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1_outward/divisor_a1
         sin_a1_outward = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
-        cos_swing_a2 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a2
-        )
+        cos_swing_a2 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)/swing_scale_a2
         sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         cos_a2_outward = across_a2*sin_swing_a2_outward/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_x_outward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_outward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_2_x_outward = constant_part_4 + arm_length_1_by_2*cos_a2_outward  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
-        # rod 2
-        pivot_2_y_outward = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2_outward
-        )
+        pivot_2_y_outward = -constant_part_5 - constant_part_times_arm_length_1_by_2*cos_a2_outward  # rod 2
         rod_2_y_outward = y - pivot_2_y_outward
         sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
         # rod 2
         pivot_2_z_outward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
             - arm_length_1*sin_a2_outward
         )
         rod_2_z_outward = z - pivot_2_z_outward
-        cos_swing_a3 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a3
-        )
+        cos_swing_a3 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)/swing_scale_a3
         sin_swing_a3_outward = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
         cos_a3_outward = across_a2*sin_swing_a3_outward/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_x_outward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_outward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x_outward = constant_part_4 + arm_length_1_by_2*cos_a3_outward  # rod 3
         rod_3_x_outward = x - pivot_3_x_outward
-        # rod 3
-        pivot_3_y_outward = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3_outward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y_outward = constant_part_5 + constant_part_times_arm_length_1_by_2*cos_a3_outward  # rod 3
         rod_3_y_outward = y - pivot_3_y_outward
         sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
         # rod 3
         pivot_3_z_outward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
             - arm_length_1*sin_a3_outward
         )
@@ -231,26 +190,16 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
         cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_x_inward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_2_x_inward = constant_part_4 + arm_length_1_by_2*cos_a2_inward  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
-        # rod 2
-        pivot_2_y_inward = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2_inward
-        )
+        pivot_2_y_inward = -constant_part_5 - constant_part_times_arm_length_1_by_2*cos_a2_inward  # rod 2
         rod_2_y_inward = y - pivot_2_y_inward
         sin_a2_inward = -across_a2*cos_swing_a2/divisor_a2 - along_a2*sin_swing_a2_outward/divisor_a2
         # rod 2
         pivot_2_z_inward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
             - arm_length_1*sin_a2_inward
         )
@@ -259,26 +208,16 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
         cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - across_a2*sin_swing_a3_outward/divisor_a3
-        # rod 3
-        pivot_3_x_inward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x_inward = constant_part_4 + arm_length_1_by_2*cos_a3_inward  # rod 3
         rod_3_x_inward = x - pivot_3_x_inward
-        # rod 3
-        pivot_3_y_inward = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y_inward = constant_part_5 + constant_part_times_arm_length_1_by_2*cos_a3_inward  # rod 3
         rod_3_y_inward = y - pivot_3_y_inward
         sin_a3_inward = -across_a2*cos_swing_a3/divisor_a3 - along_a3*sin_swing_a3_outward/divisor_a3
         # rod 3
         pivot_3_z_inward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
             - arm_length_1*sin_a3_inward
         )
@@ -287,18 +226,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
             axis_a3_inward = nearest_period(axis_a3_inward, open_a3)
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            # rod 1
-            pivot_1_x_outward = (
-                root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1_outward
-            )
+            pivot_1_x_outward = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1_outward  # rod 1
             rod_1_x_outward = x - pivot_1_x_outward
             # rod 1
             pivot_1_z_outward = (
                 root(
-                    2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                    + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                    + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                    - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                    (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                    + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
                 )
                 - arm_length_1*sin_a1_outward
             )
@@ -306,13 +240,12 @@ def unrolled(k: Constants) -> Unrolled:
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_outward_outward_outward = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x_outward*rod_2_y_outward*rod_3_z_outward + rod_1_z_outward*rod_2_x_outward*rod_3_y_outward
                             + rod_2_z_outward*rod_3_x_outward*y - rod_1_x_outward*rod_2_z_outward*rod_3_y_outward
                             - rod_1_z_outward*rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_z_outward*y
                         )
-                        /(arm_length_2*arm_length_2*arm_length_2)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_outward_2 = (
@@ -325,13 +258,12 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_outward_outward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_outward_inward = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward
                             + rod_2_z_outward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
                             - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_z_inward*y
                         )
-                        /(arm_length_2*arm_length_2*arm_length_2)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_inward_2 = (
@@ -350,13 +282,12 @@ def unrolled(k: Constants) -> Unrolled:
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_outward_inward_outward = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward
                             + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
                             - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
                         )
-                        /(arm_length_2*arm_length_2*arm_length_2)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_outward_2 = (
@@ -369,13 +300,12 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_outward_inward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_inward_inward = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward
                             + rod_2_z_inward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
                             - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_z_inward*y
                         )
-                        /(arm_length_2*arm_length_2*arm_length_2)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_inward_2 = (
@@ -406,18 +336,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            # rod 1
-            pivot_1_x_inward = (
-                root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1_inward
-            )
+            pivot_1_x_inward = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1_inward  # rod 1
             rod_1_x_inward = x - pivot_1_x_inward
             # rod 1
             pivot_1_z_inward = (
                 root(
-                    2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                    + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                    + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                    - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                    (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                    + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
                 )
                 - arm_length_1*sin_a1_inward
             )
@@ -425,13 +350,12 @@ def unrolled(k: Constants) -> Unrolled:
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_inward_outward_outward = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward
                             + rod_2_z_outward*rod_3_x_outward*y - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
                             - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_z_outward*y
                         )
-                        /(arm_length_2*arm_length_2*arm_length_2)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_outward_2 = (
@@ -444,13 +368,12 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_inward_outward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_outward_inward = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x_inward*rod_2_y_outward*rod_3_z_inward + rod_1_z_inward*rod_2_x_outward*rod_3_y_inward
                             + rod_2_z_outward*rod_3_x_inward*y - rod_1_x_inward*rod_2_z_outward*rod_3_y_inward
                             - rod_1_z_inward*rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_z_inward*y
                         )
-                        /(arm_length_2*arm_length_2*arm_length_2)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_inward_2 = (
@@ -469,13 +392,12 @@ def unrolled(k: Constants) -> Unrolled:
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_inward_inward_outward = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward
                             + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
                             - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
                         )
-                        /(arm_length_2*arm_length_2*arm_length_2)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_outward_2 = (
@@ -488,13 +410,12 @@ def unrolled(k: Constants) -> Unrolled:
                     refusal_inward_inward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_inward_inward = (
-                        assembly_sign
+                        assembly_sign_by_constant_part
                         *(
                             rod_1_x_inward*rod_2_y_inward*rod_3_z_inward + rod_1_z_inward*rod_2_x_inward*rod_3_y_inward
                             + rod_2_z_inward*rod_3_x_inward*y - rod_1_x_inward*rod_2_z_inward*rod_3_y_inward
                             - rod_1_z_inward*rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_z_inward*y
                         )
-                        /(arm_length_2*arm_length_2*arm_length_2)
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward_inward >= min_type2_margin else 3.0
@@ -561,89 +482,62 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
+        span_1_x = arm_1_radius_minus_constant_part + x  # rod 1
+        span_1_z_squared = -constant_part
         # rod 1
         span_1_z = (
             z
             - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
         )
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*arm_length_1):
+        if not (effective_a1 > arm_length_1_times_shortest_link):
             return 8*(None,)
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
-        swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
+        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
+        swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (
-                2.0*arm_length_1*divisor_a1 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1
-                - divisor_a1*divisor_a1 - y*y
-            )
-            *(
-                arm_length_1*arm_length_1 + 2.0*arm_length_1*divisor_a1 + divisor_a1*divisor_a1 + y*y
-                - arm_length_2*arm_length_2
-            )
+            (constant_part_3 + arm_length_1_times_2*divisor_a1 + divisor_a1*divisor_a1 + y*y)
+            *(arm_length_1_times_2*divisor_a1 - constant_part_3 - divisor_a1*divisor_a1 - y*y)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(None,)
-        span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
-        # rod 2
-        span_2_y = (
-            y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        span_2_x = x - constant_part_4  # rod 2
+        span_2_y = constant_part_5 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 5e-10*arm_length_1):
+        if not (effective_a2 > constant_part_6):
             return 8*(None,)
-        divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > constant_part_6 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (
-                arm_length_1*divisor_a2 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_2_y*span_2_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_2_y*span_2_y - arm_length_2*arm_length_2
-            )
+            (constant_part_3 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)
+            *(arm_length_1*divisor_a2 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_2_y*span_2_y)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(None,)
-        # rod 3
-        span_3_y = (
-            y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        span_3_y = y - constant_part_5  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 5e-10*arm_length_1):
+        if not (effective_a3 > constant_part_6):
             return 8*(None,)
-        divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > constant_part_6 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (
-                arm_length_1*divisor_a3 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_3_y*span_3_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_3_y*span_3_y - arm_length_2*arm_length_2
-            )
+            (constant_part_3 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)
+            *(arm_length_1*divisor_a3 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_3_y*span_3_y)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
@@ -653,107 +547,67 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(None,)
         # ball joint of rod 2
-        if not (abs(0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_7*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
         # ball joint of rod 3
-        if not (abs(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_7*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
-        cos_swing_a1 = (
-            (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
-        )
+        cos_swing_a1 = (-constant_part_3 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
         sin_swing_a1_outward = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
         cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1_outward/divisor_a1
-        # rod 1
-        pivot_1_x_outward = (
-            root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1_outward
-        )
+        pivot_1_x_outward = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1_outward  # rod 1
         rod_1_x_outward = x - pivot_1_x_outward
         sin_a1_outward = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
         # rod 1
         pivot_1_z_outward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
             - arm_length_1*sin_a1_outward
         )
         rod_1_z_outward = z - pivot_1_z_outward
-        cos_swing_a2 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a2
-        )
+        cos_swing_a2 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)/swing_scale_a2
         sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         cos_a2_outward = across_a2*sin_swing_a2_outward/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_x_outward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_outward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_2_x_outward = constant_part_4 + arm_length_1_by_2*cos_a2_outward  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
-        # rod 2
-        pivot_2_y_outward = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2_outward
-        )
+        pivot_2_y_outward = -constant_part_5 - constant_part_times_arm_length_1_by_2*cos_a2_outward  # rod 2
         rod_2_y_outward = y - pivot_2_y_outward
         sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
         # rod 2
         pivot_2_z_outward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
             - arm_length_1*sin_a2_outward
         )
         rod_2_z_outward = z - pivot_2_z_outward
-        cos_swing_a3 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a3
-        )
+        cos_swing_a3 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)/swing_scale_a3
         sin_swing_a3_outward = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
         cos_a3_outward = across_a2*sin_swing_a3_outward/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_x_outward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_outward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x_outward = constant_part_4 + arm_length_1_by_2*cos_a3_outward  # rod 3
         rod_3_x_outward = x - pivot_3_x_outward
-        # rod 3
-        pivot_3_y_outward = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3_outward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y_outward = constant_part_5 + constant_part_times_arm_length_1_by_2*cos_a3_outward  # rod 3
         rod_3_y_outward = y - pivot_3_y_outward
         sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
         # rod 3
         pivot_3_z_outward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
             - arm_length_1*sin_a3_outward
         )
         rod_3_z_outward = z - pivot_3_z_outward
         type2_rods_coplanar_outward_outward_outward = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x_outward*rod_2_y_outward*rod_3_z_outward + rod_1_z_outward*rod_2_x_outward*rod_3_y_outward
                 + rod_2_z_outward*rod_3_x_outward*y - rod_1_x_outward*rod_2_z_outward*rod_3_y_outward
                 - rod_1_z_outward*rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_z_outward*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_outward = (
@@ -765,31 +619,25 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward)/DEGREE  # A2: its turn
         axis_a3_outward = offset_a3 + arctan2(sin_a3_outward, cos_a3_outward)/DEGREE  # A3: its turn
         cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + span_1_z*sin_swing_a1_outward/divisor_a1
-        # rod 1
-        pivot_1_x_inward = (
-            root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1_inward
-        )
+        pivot_1_x_inward = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1_inward  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
         sin_a1_inward = span_1_z*cos_swing_a1/divisor_a1 - span_1_x*sin_swing_a1_outward/divisor_a1
         # rod 1
         pivot_1_z_inward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
             - arm_length_1*sin_a1_inward
         )
         rod_1_z_inward = z - pivot_1_z_inward
         type2_rods_coplanar_inward_outward_outward = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward
                 + rod_2_z_outward*rod_3_x_outward*y - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
                 - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_z_outward*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = (
@@ -799,38 +647,27 @@ def unrolled(k: Constants) -> Unrolled:
         )
         axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward)/DEGREE  # A1: its turn
         cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_x_inward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_2_x_inward = constant_part_4 + arm_length_1_by_2*cos_a2_inward  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
-        # rod 2
-        pivot_2_y_inward = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2_inward
-        )
+        pivot_2_y_inward = -constant_part_5 - constant_part_times_arm_length_1_by_2*cos_a2_inward  # rod 2
         rod_2_y_inward = y - pivot_2_y_inward
         sin_a2_inward = -across_a2*cos_swing_a2/divisor_a2 - along_a2*sin_swing_a2_outward/divisor_a2
         # rod 2
         pivot_2_z_inward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
             - arm_length_1*sin_a2_inward
         )
         rod_2_z_inward = z - pivot_2_z_inward
         type2_rods_coplanar_outward_inward_outward = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward
                 + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
                 - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = (
@@ -840,49 +677,37 @@ def unrolled(k: Constants) -> Unrolled:
         )
         axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward)/DEGREE  # A2: its turn
         type2_rods_coplanar_inward_inward_outward = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward
                 + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
                 - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_outward = 0.0 if type2_rods_coplanar_inward_inward_outward >= min_type2_margin else 3.0
         cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - across_a2*sin_swing_a3_outward/divisor_a3
-        # rod 3
-        pivot_3_x_inward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x_inward = constant_part_4 + arm_length_1_by_2*cos_a3_inward  # rod 3
         rod_3_x_inward = x - pivot_3_x_inward
-        # rod 3
-        pivot_3_y_inward = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y_inward = constant_part_5 + constant_part_times_arm_length_1_by_2*cos_a3_inward  # rod 3
         rod_3_y_inward = y - pivot_3_y_inward
         sin_a3_inward = -across_a2*cos_swing_a3/divisor_a3 - along_a3*sin_swing_a3_outward/divisor_a3
         # rod 3
         pivot_3_z_inward = (
             root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
             - arm_length_1*sin_a3_inward
         )
         rod_3_z_inward = z - pivot_3_z_inward
         type2_rods_coplanar_outward_outward_inward = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward
                 + rod_2_z_outward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
                 - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_z_inward*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = (
@@ -892,35 +717,32 @@ def unrolled(k: Constants) -> Unrolled:
         )
         axis_a3_inward = offset_a3 + arctan2(sin_a3_inward, cos_a3_inward)/DEGREE  # A3: its turn
         type2_rods_coplanar_inward_outward_inward = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x_inward*rod_2_y_outward*rod_3_z_inward + rod_1_z_inward*rod_2_x_outward*rod_3_y_inward
                 + rod_2_z_outward*rod_3_x_inward*y - rod_1_x_inward*rod_2_z_outward*rod_3_y_inward
                 - rod_1_z_inward*rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_z_inward*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_inward = 0.0 if type2_rods_coplanar_inward_outward_inward >= min_type2_margin else 3.0
         type2_rods_coplanar_outward_inward_inward = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward
                 + rod_2_z_inward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
                 - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_z_inward*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0.0 if type2_rods_coplanar_outward_inward_inward >= min_type2_margin else 3.0
         type2_rods_coplanar_inward_inward_inward = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x_inward*rod_2_y_inward*rod_3_z_inward + rod_1_z_inward*rod_2_x_inward*rod_3_y_inward
                 + rod_2_z_inward*rod_3_x_inward*y - rod_1_x_inward*rod_2_z_inward*rod_3_y_inward
                 - rod_1_z_inward*rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_z_inward*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = 0.0 if type2_rods_coplanar_inward_inward_inward >= min_type2_margin else 3.0
@@ -939,7 +761,7 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
-        span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
+        span_1_x = arm_1_radius_minus_constant_part + x  # rod 1
         # rod 1
         span_1_z = (
             z
@@ -952,88 +774,59 @@ def unrolled(k: Constants) -> Unrolled:
         )
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
-        if not (effective_a1 > 1e-9*arm_length_1):
+        if not (effective_a1 > arm_length_1_times_shortest_link):
             return None
-        divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
-        swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
+        divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
+        swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (
-                2.0*arm_length_1*divisor_a1 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1
-                - divisor_a1*divisor_a1 - y*y
-            )
-            *(
-                arm_length_1*arm_length_1 + 2.0*arm_length_1*divisor_a1 + divisor_a1*divisor_a1 + y*y
-                - arm_length_2*arm_length_2
-            )
+            (constant_part_3 + arm_length_1_times_2*divisor_a1 + divisor_a1*divisor_a1 + y*y)
+            *(arm_length_1_times_2*divisor_a1 - constant_part_3 - divisor_a1*divisor_a1 - y*y)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return None
-        span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
-        # rod 2
-        span_2_y = (
-            y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        span_2_x = x - constant_part_4  # rod 2
+        span_2_y = constant_part_5 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > 5e-10*arm_length_1):
+        if not (effective_a2 > constant_part_6):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > constant_part_6 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (
-                arm_length_1*divisor_a2 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_2_y*span_2_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_2_y*span_2_y - arm_length_2*arm_length_2
-            )
+            (constant_part_3 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)
+            *(arm_length_1*divisor_a2 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_2_y*span_2_y)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        # rod 3
-        span_3_y = (
-            y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        span_3_y = y - constant_part_5  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > 5e-10*arm_length_1):
+        if not (effective_a3 > constant_part_6):
             return None
-        divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > constant_part_6 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (
-                arm_length_1*divisor_a3 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_3_y*span_3_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_3_y*span_3_y - arm_length_2*arm_length_2
-            )
+            (constant_part_3 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)
+            *(arm_length_1*divisor_a3 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_3_y*span_3_y)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return None
-        cos_swing_a1 = (
-            (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
-        )
+        cos_swing_a1 = (-constant_part_3 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
         sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
+        pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         # rod 1
@@ -1047,26 +840,12 @@ def unrolled(k: Constants) -> Unrolled:
             - arm_length_1*sin_a1
         )
         rod_1_z = z - pivot_1_z
-        cos_swing_a2 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a2
-        )
+        cos_swing_a2 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)/swing_scale_a2
         sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_2_x = constant_part_4 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x = x - pivot_2_x
-        # rod 2
-        pivot_2_y = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2
-        )
+        pivot_2_y = -constant_part_5 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
         # rod 2
@@ -1080,26 +859,12 @@ def unrolled(k: Constants) -> Unrolled:
             - arm_length_1*sin_a2
         )
         rod_2_z = z - pivot_2_z
-        cos_swing_a3 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a3
-        )
+        cos_swing_a3 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)/swing_scale_a3
         sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x = constant_part_4 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x = x - pivot_3_x
-        # rod 3
-        pivot_3_y = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y = constant_part_5 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
         # rod 3
@@ -1114,12 +879,11 @@ def unrolled(k: Constants) -> Unrolled:
         )
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            assembly_sign
+            assembly_sign_by_constant_part
             *(
                 rod_1_x*rod_2_y*rod_3_z + rod_1_z*rod_2_x*rod_3_y + rod_2_z*rod_3_x*y - rod_1_x*rod_2_z*rod_3_y
                 - rod_1_z*rod_2_y*rod_3_x - rod_2_x*rod_3_z*y
             )
-            /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
@@ -1128,10 +892,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 2
-        if not (abs(0.5*y/arm_length_2 + 0.5*root(3.0)*x/arm_length_2) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_7*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 3
-        if not (abs(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_7*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return None
         axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
         axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn

@@ -26,6 +26,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a = k.single_a
     single_b = k.single_b
     tool_side = k.tool_side
+    offset_b_times_2 = 2.0*offset_b
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -78,10 +79,15 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_b_positive <= highest_b)
             else 3.0
         )
-        axis_a_negative = offset_a + arctan2(sin_a_negative, cos_a_negative + 0.0)/DEGREE  # A: its turn
+        direction_of_axis_a_negative = (
+            180.0 + axis_a_positive
+            if radius_a > 1e-11
+            else offset_a + arctan2(sin_a_negative + 0.0, cos_a_negative + 0.0)/DEGREE
+        )
+        axis_a_negative = direction_of_axis_a_negative  # A: its turn
         if not -180.000000001 <= axis_a_negative - open_a < 179.999999999:
             axis_a_negative = nearest_period(axis_a_negative, open_a)
-        axis_b_negative = offset_b + arctan2(-radius_a, r33 + 0.0)/DEGREE  # B: its turn
+        axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
         if not -180.000000001 <= axis_b_negative - open_b < 179.999999999:
             axis_b_negative = nearest_period(axis_b_negative, open_b)
         # limits of A, limits of B
@@ -117,11 +123,15 @@ def unrolled(k: Constants) -> Unrolled:
             sin_a_negative = sin_a_positive
         axis_a_positive = offset_a + arctan2(sin_a_positive, cos_a_positive)/DEGREE  # A: its turn
         axis_b_positive = offset_b + arctan2(radius_a, r33)/DEGREE  # B: its turn
-        axis_a_negative = offset_a + arctan2(sin_a_negative, cos_a_negative)/DEGREE  # A: its turn
-        axis_b_negative = offset_b + arctan2(-radius_a, r33)/DEGREE  # B: its turn
+        direction_of_axis_a_negative = (
+            180.0 + axis_a_positive
+            if radius_a > 1e-11
+            else offset_a + arctan2(sin_a_negative, cos_a_negative)/DEGREE
+        )
+        axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
         return (
             (axis_a_positive, axis_b_positive),
-            (axis_a_negative, axis_b_negative),
+            (direction_of_axis_a_negative, axis_b_negative),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:

@@ -30,6 +30,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a = k.single_a
     single_b = k.single_b
     single_c = k.single_c
+    offset_b_times_2 = 2.0*offset_b
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -70,14 +71,22 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a_down = offset_a + arctan2(-r12_before_c_down, r22_before_c_down + 0.0)/DEGREE  # A: its turn
         if not -180.000000001 <= axis_a_down - open_a < 179.999999999:
             axis_a_down = nearest_period(axis_a_down, open_a)
-        open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
-        axis_b_down = offset_b + arctan2(radius_c, r33 + 0.0)/DEGREE  # B: its turn
-        if not -180.000000001 <= axis_b_down - open_b < 179.999999999:
-            axis_b_down = nearest_period(axis_b_down, open_b)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         axis_c_down = offset_c + arctan2(sin_c_down, cos_c_down + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c_down - open_c < 179.999999999:
             axis_c_down = nearest_period(axis_c_down, open_c)
+        if radius_c > 1e-11:
+            direction_of_axis_a_up = 180.0 + axis_a_down
+            direction_of_axis_c_up = 180.0 + axis_c_down
+        else:
+            r22_before_c_up = r22*cos_c_up + r21*sin_c_up
+            r12_before_c_up = r12*cos_c_up + r11*sin_c_up
+            direction_of_axis_a_up = offset_a + arctan2(-r12_before_c_up + 0.0, r22_before_c_up + 0.0)/DEGREE
+            direction_of_axis_c_up = offset_c + arctan2(sin_c_up + 0.0, cos_c_up + 0.0)/DEGREE
+        open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
+        axis_b_down = offset_b + arctan2(radius_c, r33 + 0.0)/DEGREE  # B: its turn
+        if not -180.000000001 <= axis_b_down - open_b < 179.999999999:
+            axis_b_down = nearest_period(axis_b_down, open_b)
         # limits of A, limits of B, limits of C
         refusal_down = (
             0.0
@@ -86,15 +95,13 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_b_down <= highest_b) and (axis_c_down <= highest_c)
             else 3.0
         )
-        r22_before_c_up = r22*cos_c_up + r21*sin_c_up
-        r12_before_c_up = r12*cos_c_up + r11*sin_c_up
-        axis_a_up = offset_a + arctan2(-r12_before_c_up, r22_before_c_up + 0.0)/DEGREE  # A: its turn
+        axis_a_up = direction_of_axis_a_up  # A: its turn
         if not -180.000000001 <= axis_a_up - open_a < 179.999999999:
             axis_a_up = nearest_period(axis_a_up, open_a)
-        axis_b_up = offset_b + arctan2(-radius_c, r33 + 0.0)/DEGREE  # B: its turn
+        axis_b_up = offset_b_times_2 - axis_b_down  # B: its turn
         if not -180.000000001 <= axis_b_up - open_b < 179.999999999:
             axis_b_up = nearest_period(axis_b_up, open_b)
-        axis_c_up = offset_c + arctan2(sin_c_up, cos_c_up + 0.0)/DEGREE  # C: its turn
+        axis_c_up = direction_of_axis_c_up  # C: its turn
         if not -180.000000001 <= axis_c_up - open_c < 179.999999999:
             axis_c_up = nearest_period(axis_c_up, open_c)
         # limits of A, limits of B, limits of C
@@ -129,16 +136,20 @@ def unrolled(k: Constants) -> Unrolled:
         r22_before_c_down = r22*cos_c_down + r21*sin_c_down
         r12_before_c_down = r12*cos_c_down + r11*sin_c_down
         axis_a_down = offset_a + arctan2(-r12_before_c_down, r22_before_c_down)/DEGREE  # A: its turn
-        axis_b_down = offset_b + arctan2(radius_c, r33)/DEGREE  # B: its turn
         axis_c_down = offset_c + arctan2(sin_c_down, cos_c_down)/DEGREE  # C: its turn
-        r22_before_c_up = r22*cos_c_up + r21*sin_c_up
-        r12_before_c_up = r12*cos_c_up + r11*sin_c_up
-        axis_a_up = offset_a + arctan2(-r12_before_c_up, r22_before_c_up)/DEGREE  # A: its turn
-        axis_b_up = offset_b + arctan2(-radius_c, r33)/DEGREE  # B: its turn
-        axis_c_up = offset_c + arctan2(sin_c_up, cos_c_up)/DEGREE  # C: its turn
+        if radius_c > 1e-11:
+            direction_of_axis_a_up = 180.0 + axis_a_down
+            direction_of_axis_c_up = 180.0 + axis_c_down
+        else:
+            r22_before_c_up = r22*cos_c_up + r21*sin_c_up
+            r12_before_c_up = r12*cos_c_up + r11*sin_c_up
+            direction_of_axis_a_up = offset_a + arctan2(-r12_before_c_up, r22_before_c_up)/DEGREE
+            direction_of_axis_c_up = offset_c + arctan2(sin_c_up, cos_c_up)/DEGREE
+        axis_b_down = offset_b + arctan2(radius_c, r33)/DEGREE  # B: its turn
+        axis_b_up = offset_b_times_2 - axis_b_down  # B: its turn
         return (
             (axis_a_down, axis_b_down, axis_c_down),
-            (axis_a_up, axis_b_up, axis_c_up),
+            (direction_of_axis_a_up, axis_b_up, direction_of_axis_c_up),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:

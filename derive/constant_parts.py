@@ -1,0 +1,116 @@
+"""Constant parts: what an expression has of constants alone is computed once, under a name that says what it is.
+
+    (a2 + effective_q3 - reach) * x / (s * s)    →  (a2_plus_effective_q3 - reach) * x / s_squared
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.passes import with_inputs
+from derive.program import (
+    DEGREE,
+    FREE_ANGLE,
+    PLANE,
+    ROUNDING,
+    SHORTEST_LINK,
+    Let,
+    Output,
+    Program,
+    real,
+    rewritten,
+    symbols_of,
+)
+
+_WORDS = {FREE_ANGLE: "free_angle", ROUNDING: "rounding", SHORTEST_LINK: "shortest_link", PLANE: "plane"}
+_READABLE = re.compile(r"(?=.{1,40}$)[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+
+
+def constant_parts(programs: Iterable[Program], constants: Iterable[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
+    """The programs that read their constant parts by name, and the bindings of these, which read constants alone."""
+    before = tuple(programs)
+    parts = _Parts(frozenset(constants), {name.name for p in before for name in p.bound()})
+    changed = [
+        replace(
+            p,
+            body=tuple(rewritten(s, parts.taken) for s in p.body),
+            outputs=tuple(Output(o.name, parts.taken(o.value)) for o in p.outputs),
+        )
+        for p in before
+    ]
+    return tuple(with_inputs(p) for p in changed), tuple(Let(name, value) for value, name in parts.names.items())
+
+
+class _Parts:
+    def __init__(self, constants: frozenset[str], taken: set[str]) -> None:
+        self.constants = constants
+        self.spelled = {name.replace("_", "") for name in constants | taken}
+        self.names: dict[sp.Expr, sp.Symbol] = {}
+
+    def taken(self, value: sp.Basic) -> sp.Basic:
+        """The expression with its constant parts by name."""
+        if not value.args or not symbols_of(value):
+            return value
+        if self._is_constant(value):
+            return self._named(value)
+        if isinstance(value, sp.Add | sp.Mul):
+            fixed = [a for a in value.args if self._is_constant(a)]
+            others = [self.taken(a) for a in value.args if a not in fixed]
+            if any(symbols_of(a) for a in fixed):
+                return value.func(self._named(value.func(*fixed)), *others)
+            return value.func(*fixed, *others)
+        return value.func(*(self.taken(a) for a in value.args))
+
+    def _is_constant(self, value: sp.Basic) -> bool:
+        return isinstance(value, sp.Expr) and DEGREE not in value.free_symbols and (
+            {s.name for s in symbols_of(value)} <= self.constants
+        )
+
+    def _named(self, value: sp.Expr) -> sp.Expr:
+        if value.is_Symbol or (-value).is_Symbol or (1 / value).is_Symbol or not value.is_Add | value.is_Mul | value.is_Pow:
+            return value
+        if value.could_extract_minus_sign():
+            return -self._named(-value)
+        if value.is_Pow and value.exp < 0 or (value.is_Mul and all(f.as_base_exp()[1] < 0 for f in value.args)):
+            return 1 / self._named(1 / value)
+        if value not in self.names:
+            self.names[value] = self._fresh(_words(value))
+        return self.names[value]
+
+    def _fresh(self, stem: str) -> sp.Symbol:
+        stem = stem if _READABLE.match(stem) else "constant_part"
+        number, proposal = 1, stem
+        while proposal.replace("_", "") in self.spelled:
+            number += 1
+            proposal = f"{stem}_{number}"
+        self.spelled.add(proposal.replace("_", ""))
+        return real(proposal)
+
+
+def _words(value: sp.Expr) -> str:
+    """An expression in words: `a2_plus_a3`, `a3_by_effective_q3`, `a2_squared`."""
+    if value.is_Symbol:
+        return str(value.name)
+    if value.is_Number:
+        return _WORDS.get(value, str(value).replace("/", "_by_"))
+    if value.is_Pow and value.exp == 2:
+        return f"{_words(value.base)}_squared"
+    if value.is_Add:
+        terms = sorted(value.args, key=lambda t: (t.could_extract_minus_sign(), str(t)))
+        words = [("_minus_" if t.could_extract_minus_sign() else "_plus_") + _words(_without_sign(t)) for t in terms]
+        return "".join(words).removeprefix("_plus_")
+    if value.is_Mul:
+        above, below = value.as_numer_denom()
+        factors = sorted(sp.Mul.make_args(above), key=lambda f: (f.is_Number, str(f)))
+        text = "_times_".join(map(_words, factors))
+        return text if below == 1 else f"{text}_by_{'_by_'.join(_words(f) for f in sp.Mul.make_args(below))}"
+    return "constant_part"
+
+
+def _without_sign(term: sp.Expr) -> sp.Expr:
+    """The term without its minus sign."""
+    return -term if term.could_extract_minus_sign() else term
