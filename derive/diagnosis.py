@@ -158,6 +158,16 @@ def texts(kinematics: Kinematics) -> tuple[str, ...]:
     return tuple(dict.fromkeys(found))
 
 
+def workspace(kinematics: Kinematics) -> tuple[str, ...]:
+    """What bounds the workspace besides the limits of the axes: the reasons to refuse a pose that is one."""
+    reasons = reasons_of(kinematics)
+    bounds = (s for s in kinematics.branch.body if isinstance(s, Require) and s.otherwise is Status.UNREACHABLE)
+    found: dict[str, list[str]] = {}
+    for subject, _, why in (c.reason.partition(" [")[0].rpartition(": ") for s in bounds for c in reasons.checks([s])):
+        found.setdefault(why, []).append(subject)
+    return tuple(f"{', '.join(dict.fromkeys(who))}: {why}".removeprefix(": ") for why, who in found.items())
+
+
 def _told(part: sp.Basic) -> sp.Basic:
     """Of alternatives that all fail, the one that is no flag."""
     return next((p for p in sp.ordered(part.args) if not _is_flag(p)), part) if isinstance(part, sp.Or) else part

@@ -147,7 +147,7 @@ def inverse_program(
     in_plane: tuple[Statement, ...] = ()
     if inverse.closure.plane is not None:
         distance = sp.Abs(real("z") - inverse.closure.plane)
-        in_plane = (Require(sp.Le(distance, PLANE * SCALE), Status.UNREACHABLE, "z of a planar machine"),)
+        in_plane = (Require(sp.Le(distance, PLANE * SCALE), Status.UNREACHABLE, "z: a planar machine has none"),)
     resolved = {s.name for s in statements if isinstance(s, Let)}
     axes = tuple(
         let for j in mechanism.joints if j not in inverse.frozen for let in axis_lets(j) if let.name not in resolved

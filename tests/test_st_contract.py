@@ -178,7 +178,7 @@ def test_inputs_are_documented(file: str) -> None:
     axes = [p for p in block.pragmas if "'sm_kin_axes'" in p]
     assert len(axes) == (file != "orientation/Softkin_Tool.st")
     assert all(re.fullmatch(r"\{attribute 'sm_kin_axes' := '\w+(, \w+)*'\}", a) for a in axes)
-    for title in ("**Axes**", "**Parameters**", "**Configuration**", "**Singularities**", "**Verification**"):
+    for title in ("**Axes**", "**Parameters**", "**Configuration**", "**Singularities**", "**Workspace**", "**Verification**"):
         assert title in block.comment
     for given in (v for s in block.sections if s.scope == "VAR_INPUT" for v in s.variables):
         assert given.comment and given.initial is not None
@@ -190,8 +190,10 @@ def test_inputs_are_documented(file: str) -> None:
             assert re.search(r":= '[\[\]](-inf|-?\d+) \.\. (\+inf|-?\d+)[\[\]]'\}", pragma)
             assert "-inf" not in pragma or "']-inf" in pragma
             assert "+inf" not in pragma or "+inf['" in pragma
-        if given.name.startswith("dLinkLength"):
-            assert any("'u'" in p for p in given.pragmas)
+        unit = [p.split("'")[3] for p in given.pragmas if "'sm_kin_param_unit'" in p]
+        assert unit or kind != "LREAL" or given.name == "dMinType2Margin" or given.name.startswith("dCoupling"), "a number"
+        if given.name.startswith(("dLinkLength", "dArmLength")):
+            assert unit == ["u"]
 
 
 def test_vendor_ranges_are_half_open() -> None:

@@ -16,6 +16,7 @@ from derive.emit.st import StructuredTextFiles
 from derive.emit.st_contract import _FILE
 from derive.emit.st_contract import load as contract
 from derive.kinematics import Kinematics
+from tests.execution.controller import OK, Controller
 from tests.st import ast
 from tests.st.library import compile_st
 
@@ -52,6 +53,21 @@ def test_an_older_library_gets_the_predecessors() -> None:
 def test_the_methods_of_what_is_left_out_are_left_out() -> None:
     gone = {m.name for m in block(None).methods} - {m.name for m in block("before_4_11").methods}
     assert gone == {"IsConfigSingular", "GetPeriods", "GetFlangeOrientationImageTotal", "GetFlangeOrientationImageWithOri"}
+
+
+@pytest.mark.parametrize("name", ["kin_scara4_zccoupled_type1", "kin_wrist2", "kin_p2x_type1"])
+def test_what_is_left_is_executed(name: str) -> None:
+    """A position kinematics, an orientation kinematics and a loop, in the text for an older library: there and back."""
+    mechanism = load(MECHANISMS / f"{name}.py")
+    files = StructuredTextFiles("before_4_11").render((kinematics() if "scara4" in name else build(mechanism),))
+    machine = Controller(compile_st({n: t for n, t in files.items() if n.endswith(".st")}), mechanism)
+    assert machine.initialise({p.name: p.nominal for p in mechanism.parameters}) == OK
+    axes = tuple(30.0 if j.is_angle else 5.0 + j.nominal for j in mechanism.joints)
+    status, pose = machine.forward(axes)
+    assert status == OK
+    answered, back = machine.inverse(*pose, axes)
+    assert answered == OK and back[: len(axes)] == pytest.approx(axes)
+    assert machine.diagnose(*pose, axes) == ("", 0.0)
 
 
 def test_plcopen_follows_the_profile() -> None:

@@ -9,6 +9,7 @@ from textwrap import wrap
 from jinja2 import Environment
 
 from derive.cost import Bound, Cost, Costs, costs_of
+from derive.diagnosis import workspace
 from derive.emit.st_block import Block
 from derive.emit.st_names import input_name, respelled
 from derive.kinematics import Kinematics
@@ -45,6 +46,7 @@ def description(kinematics: Kinematics, block: Block, templates: Environment) ->
         parameters=_table(("Parameter", "Unit", "Range", "Meaning"), _parameters(block)),
         configuration=list(_configuration(block)),
         singularities=list(_singularities(kinematics)),
+        workspace=list(_workspace(kinematics)),
         costs=list(_costs(costs_of(kinematics), block)),
         notes=[line for note in kinematics.mechanism.notes for line in _item(respelled(note, names))],
         verification=list(_verification(kinematics)),
@@ -79,6 +81,22 @@ def _singularities(kinematics: Kinematics) -> Iterator[str]:
         yield "None."
     for margin in kinematics.margins:
         yield from _item(f"{margin.name} ({margin.kind}): where its margin, a number without a unit, is 0.")
+
+
+def _workspace(kinematics: Kinematics) -> Iterator[str]:
+    own = [quantity.meaning for quantity in kinematics.mechanism.limited]
+    limits = " and of ".join(["the limits of the axes", *own]) if own else "the limits of the axes"
+    bounds = workspace(kinematics)
+    if not kinematics.mechanism.joints:
+        yield "Every pose: there is no axis."
+    elif not bounds:
+        yield from wrap(f"Every position that {limits} allow.", _WIDTH)
+    else:
+        text = f"A pose inside {limits} is refused for these reasons only; Diagnose says which it is, and by how much:"
+        yield from wrap(text, _WIDTH)
+        yield ""
+    for bound in bounds:
+        yield from _item(f"{bound}.")
 
 
 def _verification(kinematics: Kinematics) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -17,6 +18,7 @@ ROOT = OUTPUT.parent
 GUIDE = (ROOT / "docs" / "CODESYS.md").read_text(encoding="utf-8")
 OVERVIEW = (OUTPUT / "st" / "README.md").read_text(encoding="utf-8")
 PROGRAMS = re.findall(r"```iecst\n(.*?)```", GUIDE, re.DOTALL)
+ROBOTICS = (Path(__file__).parent / "robotics.st").read_text(encoding="utf-8")
 BLOCKS = {part.path: part for part in all_parts(FILES).values() if "." not in part.path}
 
 
@@ -44,6 +46,30 @@ def test_a_block_can_be_called_outside_an_axis_group() -> None:
         assert made.status == "SMC_NO_ERROR"
         assert (made.frame.vT.dX, made.frame.vT.dY, made.frame.vT.dZ) == pytest.approx((259.8076211353, 400.0, 10.0))
         assert (made.back.a0, made.back.a1, made.back.a2) == pytest.approx((30.0, 60.0, 10.0))
+
+
+def test_the_demo_moves_a_group() -> None:
+    """Its program, executed on stand-ins that are always done: power, then the moves in order, the other elbow, then jogging."""
+    (program,) = (closed(p) for p in PROGRAMS if p.startswith("PROGRAM PRG_Demo"))
+    needed = {name: text for name, text in FILES.items() if name.startswith("softkin/") or "/Softkin_Scara2_Z." in name}
+    texts = {"robotics": ROBOTICS, "Groups": "VAR_GLOBAL\n  Scara : AXIS_GROUP_REF_SM3;\nEND_VAR\n", "PRG_Demo": program}
+    library = compile_st({**needed, **texts})
+    demo, group = library.new("PRG_Demo"), library.constant("Scara")
+    done: list[tuple[int, float, float, int]] = []
+    for _ in range(60):
+        demo()
+        place = group.position.c
+        elbow = group.configuration.abyData[0]
+        if (now := (group.moved, place.X, place.Y, elbow)) not in done[-1:]:
+            done.append(now)
+    assert done == [
+        (0, 0.0, 0.0, 0), (1, 400.0, 100.0, 0), (2, 400.0, -100.0, 0), (2, 400.0, -100.0, 2), (1, 400.0, -100.0, 2)
+    ]  # fmt: skip
+    assert not group.refused and demo.iStep == 100 and not demo.jog.Busy
+    demo.xJog = True
+    demo.axForward[0] = True
+    demo()
+    assert demo.jog.Busy and group.moved == 3
 
 
 def test_every_choice_it_names_exists() -> None:

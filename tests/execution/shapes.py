@@ -10,6 +10,8 @@ _ALONE = re.compile(r"VAR|METHOD|FUNCTION|PROPERTY|TYPE|GET|END_|\{|TRAFO\.")
 _ENDS = (";", "THEN", "ELSE", "DO", "OF", ":")
 _VARIABLE = re.compile(r"\w+ : [^;]*;")
 _VALUES = re.compile(r":= \[ ?([^\[\]]*?) ?\];")
+_LABEL = re.compile(r"(\d+): .*;")
+"""A statement of a CASE: without it, there must be another."""
 _CONDITION = re.compile(r"(IF|ELSIF) .*THEN")
 _LONGEST_GROUP = 8
 """Lines in a group that may repeat: a condition with its refusal, a choice between two assignments."""
@@ -40,6 +42,8 @@ def abridged(text: str, seen: set[str]) -> str:
             found.append(line)
         elif condition := _CONDITION.fullmatch(line):
             found.append(f"{condition[1]} n THEN")
+        elif label := _LABEL.fullmatch(line):
+            found.append(f"{label[1]}: ;")
         elif not _VARIABLE.fullmatch(line):
             found.append(";" if line.endswith(";") else line)
         seen.add(shape(line))

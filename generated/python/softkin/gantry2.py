@@ -207,7 +207,7 @@ class Gantry2(OffsetKinematics):
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return Status.BAD_INPUT
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         axis_x = offset_x + x
@@ -266,7 +266,7 @@ class Gantry2(OffsetKinematics):
             and abs(point_z) <= 1e9
         ):
             return Status.BAD_INPUT
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         joint_x = x - point_x  # joint_x: affine in the x equation

@@ -316,7 +316,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         axis_x = offset_x + x
@@ -441,7 +441,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
             and abs(point_z) <= 1e9 and abs(ref_r) <= 1e9
         ):
             return Status.BAD_INPUT
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         free_r = (ref_r - offset_r)*DEGREE

@@ -276,7 +276,7 @@ class HGantry2(OffsetKinematics):
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return Status.BAD_INPUT
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         a = x - y  # a, b: affine in the x and y equations
@@ -353,7 +353,7 @@ class HGantry2(OffsetKinematics):
             and abs(point_z) <= 1e9
         ):
             return Status.BAD_INPUT
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         a = point_y + x - point_x - y  # a, b: affine in the x and y equations

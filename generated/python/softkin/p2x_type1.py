@@ -383,7 +383,7 @@ class P2XType1(OffsetKinematics):
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return Status.BAD_INPUT
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         span_1_y = y - rail_y_1  # rod 1
@@ -572,7 +572,7 @@ class P2XType1(OffsetKinematics):
             and abs(point_z) <= 1e9
         ):
             return Status.BAD_INPUT
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         flange_y = y - point_y  # the flange behind the point

@@ -276,7 +276,7 @@ class P2Y(OffsetKinematics):
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return Status.BAD_INPUT
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         a1 = x + y  # a1, a2: affine in the x and y equations
@@ -353,7 +353,7 @@ class P2Y(OffsetKinematics):
             and abs(point_z) <= 1e9
         ):
             return Status.BAD_INPUT
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         a1 = x + y - point_x - point_y  # a1, a2: affine in the x and y equations

@@ -490,7 +490,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return Status.UNREACHABLE
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
@@ -794,7 +794,7 @@ class SCCC(OffsetKinematics, TwistChoice):
             and abs(point_z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9 and abs(ref_a3) <= 1e9
         ):
             return Status.BAD_INPUT
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(point_z - z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         free_a1 = (ref_a1 - offset_a1)*DEGREE

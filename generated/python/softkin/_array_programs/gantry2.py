@@ -44,7 +44,7 @@ class ArrayPrograms(Programs):
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        # z of a planar machine
+        # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         axis_x = offset_x + x
         axis_y = offset_y + y

@@ -115,7 +115,7 @@ class ArrayPrograms(Programs):
         heading_length = root(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        # z of a planar machine
+        # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         axis_x = offset_x + x
         axis_y = offset_y + y

@@ -46,7 +46,7 @@ class ArrayPrograms(Programs):
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        # z of a planar machine
+        # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a

@@ -72,7 +72,7 @@ class ArrayPrograms(Programs):
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
-        # z of a planar machine
+        # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         radius_c = root(x*x + y*y)  # c: direction and distance of a point
         if everywhere(radius_c > 1e-11*machine_scale):

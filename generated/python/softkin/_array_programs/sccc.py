@@ -143,7 +143,7 @@ class ArrayPrograms(Programs):
         heading_length = root(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        # z of a planar machine
+        # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
         cos_heading = heading_along/heading_divisor
@@ -342,7 +342,7 @@ class ArrayPrograms(Programs):
         heading_length = root(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        # z of a planar machine
+        # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
         cos_heading = heading_along/heading_divisor

@@ -38,7 +38,7 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale
-        return Diagnosis(Status.UNREACHABLE, "z of a planar machine [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     span_1_x = displacement + x - tcp_displacement
     effective_a1 = sqrt(span_1_x*span_1_x + y*y)
     if not (effective_a1 > 1e-9*inner_arm):

@@ -49,7 +49,7 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale
-        return Diagnosis(Status.UNREACHABLE, "z of a planar machine [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     axis_x = offset_x + x
     axis_y = offset_y + y
     heading_divisor = heading_length if heading_length > 1e-11 else 1.0

@@ -40,7 +40,7 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale
-        return Diagnosis(Status.UNREACHABLE, "z of a planar machine [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     span_upper_x = x + swap_xy*y - swap_xy*x
     span_upper_y = y + swap_xy*x - swap_xy*y
     effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)

@@ -34,7 +34,7 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale
-        return Diagnosis(Status.UNREACHABLE, "z of a planar machine [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     span_1_y = y - rail_y_1
     root_square_a1 = (arm_length_1 + span_1_y)*(arm_length_1 - span_1_y)
     if not (root_square_a1 >= -1e-12*arm_length_1*arm_length_1):

@@ -29,7 +29,7 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale
-        return Diagnosis(Status.UNREACHABLE, "z of a planar machine [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     root_square_a2 = -(y - arm_length)*(arm_length + y)
     if not (root_square_a2 >= -2.5e-13*arm_length*arm_length):
         missing = arm_length + 0.5*abs(arm_length - y) + 0.5*abs(arm_length + y)

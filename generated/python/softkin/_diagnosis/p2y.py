@@ -24,7 +24,7 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale
-        return Diagnosis(Status.UNREACHABLE, "z of a planar machine [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     a1 = x + y
     axis_a1 = a1 + offset_a1
     a2 = y - x

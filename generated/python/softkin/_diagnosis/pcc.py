@@ -35,7 +35,7 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale
-        return Diagnosis(Status.UNREACHABLE, "z of a planar machine [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     reach = sqrt(x*x + y*y)
     sine_square_a2_from_a1 = (
         (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)

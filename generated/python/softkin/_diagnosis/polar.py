@@ -29,7 +29,7 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale
-        return Diagnosis(Status.UNREACHABLE, "z of a planar machine [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     radius_c = sqrt(x*x + y*y)
     if radius_c > 1e-11*machine_scale:
         cos_c = x/radius_c

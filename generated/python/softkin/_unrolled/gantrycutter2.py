@@ -58,7 +58,7 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return 1*(3.0,)
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 1*(3.0,)
         axis_x = offset_x + x
@@ -93,7 +93,7 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return 1*(None,)
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 1*(None,)
         axis_x = offset_x + x
@@ -116,7 +116,7 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return None
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
         axis_x = offset_x + x

@@ -48,7 +48,7 @@ def unrolled(k: Constants) -> Unrolled:
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
             return 4*(2.0,)
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 4*(3.0,)
         span_1_x = constant_part + x  # rod 1
@@ -175,7 +175,7 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 4*(None,)
         span_1_x = constant_part + x  # rod 1
@@ -273,7 +273,7 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2 = signs
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
         span_1_x = constant_part + x  # rod 1

@@ -45,7 +45,7 @@ def unrolled(k: Constants) -> Unrolled:
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
             return 2*(2.0,)
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 2*(3.0,)
         reach = sqrt(x*x + y*y)
@@ -132,7 +132,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         ref_a1, _ = reference
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 2*(None,)
         reach = sqrt(x*x + y*y)
@@ -188,7 +188,7 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         (sigma_elbow,) = signs
         ref_a1, _ = reference
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
         reach = sqrt(x*x + y*y)

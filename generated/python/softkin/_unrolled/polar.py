@@ -34,7 +34,7 @@ def unrolled(k: Constants) -> Unrolled:
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_c) <= 1e9):
             return 1*(2.0,)
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 1*(3.0,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
@@ -64,7 +64,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         ref_c, _ = reference
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 1*(None,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
@@ -85,7 +85,7 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         ref_c, _ = reference
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point

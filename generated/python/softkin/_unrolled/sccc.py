@@ -78,7 +78,7 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return 2*(3.0,)
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 2*(3.0,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
@@ -222,7 +222,7 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return 2*(None,)
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 2*(None,)
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0
@@ -307,7 +307,7 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return None
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
         heading_divisor = heading_length if heading_length > 1e-11 else 1.0

@@ -33,7 +33,7 @@ def unrolled(k: Constants) -> Unrolled:
         # numbers of reasonable size
         if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
             return 1*(2.0,)
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 1*(3.0,)
         a = x - y  # a, b: affine in the x and y equations
@@ -63,7 +63,7 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 1*(None,)
         a = x - y  # a, b: affine in the x and y equations
@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), _ = frame
-        # z of a planar machine
+        # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
         a = x - y  # a, b: affine in the x and y equations
