@@ -51,11 +51,21 @@ class Naming:
 
     def __init__(self, mechanism: Mechanism, values: Values) -> None:
         self._parameters = lengths_of(mechanism)
+        self._angles = tuple(p.name for p in mechanism.parameters if p.role is Role.ANGLE)
         self._machines = [{**values, **_own(mechanism, seed)} for seed in _SEEDS]
 
     def length(self, measure: Callable[[Values], float]) -> sp.Expr | None:
         """The parameter, or half of it, that the length is on every machine; None where it is none."""
         return self._found(lambda machine: abs(measure(machine)), magnitude=True)
+
+    def angle(self, measure: Callable[[Values], float]) -> sp.Expr | None:
+        """The parameter that the angle, in degrees, is on every machine."""
+        measured = np.array([measure(machine) for machine in self._machines])
+        for name in self._angles:
+            given = np.array([float(machine[name]) for machine in self._machines])
+            if np.all(np.abs((measured - given + 180.0) % 360.0 - 180.0) <= _SAME * 360.0):
+                return sp.Symbol(name)
+        return None
 
     def coordinates(self, entries: Sequence[Callable[[Values], float]]) -> tuple[sp.Expr, ...] | None:
         """The parameters that the coordinates of a point are; None where one of them is no parameter and not zero."""
@@ -85,7 +95,7 @@ def _own(mechanism: Mechanism, seed: int) -> dict[str, Array]:
     drawn = sample_machine(mechanism, seed)
     found = {}
     for parameter in mechanism.parameters:
-        is_zero = parameter.role in LENGTHS and parameter.nominal == 0
+        is_zero = parameter.role in (*LENGTHS, Role.ANGLE) and parameter.nominal == 0
         found[parameter.name] = np.asarray(generator.uniform(1.0, 2.0)) if is_zero else drawn[parameter.name]
     return found
 

@@ -13,7 +13,7 @@ import numpy as np
 import sympy as sp
 
 from derive.drawing.labels import Naming, Values, axis_name, vector_at
-from derive.drawing.scene import Body, Dimension, Frame, Scene, Segment, Slide, Spot, Turn, point
+from derive.drawing.scene import Arc, Body, Dimension, Frame, Scene, Segment, Slide, Spot, Turn, point
 from derive.mechanism import ROTATION, DescriptionError, Joint, Mechanism, Rod, X, Y, Z
 from derive.run import Array, evaluate
 
@@ -46,6 +46,7 @@ def loop_scene(mechanism: Mechanism, values: Values, tool: Frame) -> Scene:
         tuple(point(g) for g in builder.grounds),
         tool,
         tuple(builder.hidden),
+        tuple(builder.arcs),
     )
 
 
@@ -60,6 +61,7 @@ class _Builder:
     dimensions: list[Dimension] = field(default_factory=list)
     spots: list[Spot] = field(default_factory=list)
     hidden: list[sp.Expr] = field(default_factory=list)
+    arcs: list[Arc] = field(default_factory=list)
     grounds: list[Array] = field(default_factory=list)
     _held: list[tuple[Entries, Array]] = field(default_factory=list)
     """What stands still: the grounds, and where rails begin."""
@@ -102,6 +104,9 @@ class _Builder:
         (entries, _), *_ = ends
         here, there = (vector_at(entries, {**self.values, joint.symbol.name: np.asarray(v)}) for v in (0.0, 1.0))
         self.slides.append(Slide(axis_name(joint), point(vector_at(entries, self.values)), point(there - here)))
+        rate = tuple(sp.diff(e, joint.symbol) for e in _padded(entries))
+        steep = np.array([0.0, 0.0, np.sign(there[2] - here[2])])
+        self._angle(lambda v: float(np.degrees(np.arccos(abs(vector_at(rate, v)[2])))), here, steep, there - here)
         self._hold(tuple(e.xreplace({joint.symbol: sp.Integer(0)}) for e in entries), is_ground=False)
 
     def _crank(self, joint: Joint, ends: list[tuple[Entries, bool]]) -> None:
@@ -160,10 +165,30 @@ class _Builder:
                 self._hold(bar.base)
         for entries, at in self._held:
             self._given(_padded(entries), np.zeros(3), at)
+            self._azimuth(_padded(entries), at)
         points = [at for _, at in self._held]
         if len(points) > 2 or len(self.grounds) > 1:
             pairs = list(zip(points, (*points[1:], points[0]), strict=True))
             self.segments += [Segment(point(a), point(b), Body.BASE) for a, b in pairs[: len(points) if len(points) > 2 else 1]]
+
+    def _azimuth(self, entries: Entries, at: Array) -> None:
+        """The direction of a point, from X."""
+
+        def azimuth(values: Values) -> float:
+            x, y, _ = vector_at(entries, values)
+            return float(np.degrees(np.arctan2(y, x)))
+
+        if np.linalg.norm(at[:2]) > _EXACT:
+            self._angle(azimuth, np.zeros(3), np.array([1.0, 0.0, 0.0]), np.array([at[0], at[1], 0.0]))
+
+    def _angle(self, measure: Callable[[Values], float], at: Array, start: Array, end: Array) -> None:
+        name = self.naming.angle(measure)
+        if name is None or any(arc.label == name for arc in self.arcs):
+            return
+        if np.linalg.norm(end / np.linalg.norm(end) - start) <= _EXACT:
+            self.hidden.append(name)
+        else:
+            self.arcs.append(Arc(name, point(at), point(start), point(end / np.linalg.norm(end))))
 
     def _hold(self, entries: Entries, *, is_ground: bool = True) -> None:
         at = vector_at(entries, self.values)

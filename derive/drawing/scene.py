@@ -70,6 +70,16 @@ class Dimension:
 
 
 @dataclass(frozen=True)
+class Arc:
+    """An angle of the machine: from one direction to another, at a point."""
+
+    label: sp.Expr
+    at: Point
+    start: Point
+    end: Point
+
+
+@dataclass(frozen=True)
 class Spot:
     """A point that parameters give by its coordinates."""
 
@@ -99,7 +109,8 @@ class Scene:
     """Where the machine is held."""
     tool: Frame
     hidden: tuple[sp.Expr, ...] = ()
-    """Lengths that are zero in this machine."""
+    """Lengths and angles that are zero in this machine."""
+    arcs: tuple[Arc, ...] = ()
 
     @property
     def size(self) -> float:

@@ -49,6 +49,21 @@ def test_bars_and_links_have_the_lengths_of_parameters(one: Drawn) -> None:
         assert dimension.is_negative == (stated < 0)
 
 
+@pytest.mark.parametrize(
+    ("name", "angles"),
+    [("Kin_Delta_P3C_Type3", {"azimuth_1", "azimuth_2", "azimuth_3"}), ("Kin_Tripod_Linear", {"rail_angle"})],
+)
+def test_angles_are_as_wide_as_their_parameters(name: str, angles: set[str]) -> None:
+    """Those of a machine that are not zero have an arc, and the others are named."""
+    one = drawn(name)
+    scene = one.drawing.scene
+    nominal = {p.name: p.nominal for p in one.mechanism.parameters}
+    assert {str(arc.label) for arc in scene.arcs} == {a for a in angles if nominal[a] != 0}
+    assert {a for a in angles if nominal[a] == 0} <= set(map(str, scene.hidden))
+    for arc in scene.arcs:
+        assert np.degrees(np.arccos(np.dot(arc.start, arc.end))) == pytest.approx(abs(nominal[str(arc.label)]))
+
+
 def test_every_rod_is_drawn_with_its_length(one: Drawn) -> None:
     scene, mechanism = one.drawing.scene, one.mechanism
     bars = mechanism.bars or mechanism.rods

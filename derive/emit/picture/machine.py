@@ -11,15 +11,16 @@ from derive.drawing.drawing import Drawing
 from derive.drawing.scene import Body, Dimension, Frame, Point, Segment, Turn
 from derive.emit.picture import style
 from derive.emit.picture.ink import Vector
-from derive.emit.picture.naming import name_axes, name_length, name_point, name_slide, name_turn
+from derive.emit.picture.naming import name_angle, name_axes, name_length, name_point, name_slide, name_turn
 from derive.emit.picture.placing import Sheet, around
 from derive.emit.picture.rails import FREE, rails, slide_arrow
 from derive.emit.picture.spelling import spelled
-from derive.emit.picture.symbols import bar, ground, rail, triad, turning
+from derive.emit.picture.symbols import angle_lines, bar, ground, opening, rail, triad, turning
 from derive.emit.picture.view import Box, fitted
 
 _MARGINS = (78.0, 62.0, 84.0, 58.0)
 """Room for names about the machine: left, below, right, above."""
+_ANGLE_RADIUS = 46.0
 _CLOSE = 30.0
 """Joints nearer than this would cover each other."""
 _ORIGIN = Frame((0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
@@ -65,6 +66,10 @@ class Machine:
         for turn, at, radius in joints:
             sheet.draw(turning(turn, at, radius, view))
         self._frames_and_names(joints)
+        for index, arc in enumerate(scene.arcs):
+            radius = _ANGLE_RADIUS + 15.0 * index
+            sheet.draw(angle_lines(arc, radius, view))
+            name_angle(sheet, self._spelled(arc.label), view.page(arc.at), opening(arc, radius, view))
         for dimension in sorted(scene.dimensions, key=lambda d: -self._length(d)):
             text = self._spelled(dimension.label) + (" < 0" if dimension.is_negative else "")
             name_length(sheet, view, dimension, text)

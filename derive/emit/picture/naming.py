@@ -55,6 +55,15 @@ def name_point(sheet: Sheet, text: str, at: Vector) -> None:
     sheet.label(text, style.LABEL - 1.5, style.INK, places)
 
 
+def name_angle(sheet: Sheet, text: str, at: Vector, points: Sequence[Vector]) -> None:
+    """The name of an angle, outside its arc."""
+    middle = points[len(points) // 2]
+    toward = (middle - at) / max(float(np.linalg.norm(middle - at)), 1e-9)
+    places = around(middle, (12.0, 20.0, 32.0), toward=toward)
+    aside = [Place(place.at + _aside(place.at, middle, 2.6 * len(text)), place.cost) for place in places]
+    sheet.label(text, style.LABEL, style.INK, aside)
+
+
 def name_length(sheet: Sheet, view: View, dimension: Dimension, text: str) -> None:
     """A dimension line beside what it measures; a leader to the middle where that is too short."""
     start, end = view.page(dimension.start), view.page(dimension.end)

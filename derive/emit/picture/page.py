@@ -56,6 +56,8 @@ def _words(drawing: Drawing, shown: Sequence[Choice], names: Mapping[str, str]) 
         values = ", ".join(f"{joint.name} = {value:.6g}{'°' if joint.is_angle else ''}" for joint, value in drawing.axes)
         where = "Home pose, where" if drawing.is_home else "Drawn where"
         yield from wrap(f"{where} {values}. Arrows show the positive direction of every axis.", _LETTERS)
+    if any(turn.zero is not None for turn in drawing.scene.turns):
+        yield "Dashed: where a rotary axis is 0."
     if is_stacked(drawing.scene):
         yield "Rails of linear axes that begin in one point are drawn one on the end of the other."
     hidden = ", ".join(spelled(label, names) for label in drawing.scene.hidden)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from derive.drawing.scene import Body, Frame, Segment, Turn
+from derive.drawing.scene import Arc, Body, Frame, Segment, Turn
 from derive.emit.picture import style
 from derive.emit.picture.ink import Area, Mark, Vector, area, arrow, line
 from derive.emit.picture.view import View
@@ -76,15 +76,38 @@ def turning(turn: Turn, at: Vector, radius: float, view: View) -> list[Mark]:
     if view.is_planar:
         r = style.JOINT_RADIUS - 2.0
         marks: list[Mark] = [area(_circle(at, r), style.JOINT, style.TURN, 1.6), area(_circle(at, 2.0), style.TURN, style.TURN)]
-        for direction in (turn.zero, turn.toward) if turn.zero is not None else (turn.toward,):
-            if direction is not None:
-                _, x, _ = basis(turn.axis, direction)
-                marks.append(line([at, at + (radius + 12.0) * (view.axes @ x)], style.TURN, 1.0, (4.0, 3.0)))
+        marks += _reference(turn, turn.zero or turn.toward, at, radius + 14.0, view)
         return [*marks, *arrow(arc(turn, at, radius, view), style.TURN, 2.2)]
     z = view.axes @ np.array(turn.axis)
     marks = [line([at - 34.0 * z, at + 44.0 * z], style.TURN, 1.0, (9.0, 3.0, 2.0, 3.0))]
     marks += _cylinder(turn, at, view)
+    marks += _reference(turn, turn.zero, at, 3.0 * radius, view)
     return [*marks, *arrow(arc(turn, at + 22.0 * z, radius * 0.85, view), style.TURN, 2.2)]
+
+
+def _reference(turn: Turn, direction: Sequence[float] | None, at: Vector, length: float, view: View) -> list[Mark]:
+    """A dashed line from which a turn is counted."""
+    if direction is None:
+        return []
+    _, x, _ = basis(turn.axis, direction)
+    return [line([at, at + length * (view.axes @ x)], style.TURN, 1.0, (4.0, 3.0))]
+
+
+def opening(arc_: Arc, radius: float, view: View) -> list[Vector]:
+    """The points of an angle between two directions, the short way."""
+    start, end = np.array(arc_.start), np.array(arc_.end)
+    angle = float(np.arccos(np.clip(start @ end, -1.0, 1.0)))
+    across = end - (end @ start) * start
+    across /= np.linalg.norm(across)
+    at = view.page(arc_.at)
+    return [at + radius * (view.axes @ (np.cos(a) * start + np.sin(a) * across)) for a in np.linspace(0.0, angle, STEPS)]
+
+
+def angle_lines(arc_: Arc, radius: float, view: View) -> list[Mark]:
+    """An angle of the machine: both directions, and an arrow from the first to the second."""
+    at, points = view.page(arc_.at), opening(arc_, radius, view)
+    sides: list[Mark] = [line([at, at + 1.25 * (p - at)], style.FAINT, 0.9, (3.0, 3.0)) for p in (points[0], points[-1])]
+    return [*sides, *arrow(points, style.FAINT, 1.2, 0.8)]
 
 
 def _cylinder(turn: Turn, at: Vector, view: View) -> list[Area]:
