@@ -80,11 +80,13 @@ def _chosen(entries: tuple[Entry, ...], names: Sequence[str]) -> tuple[Entry, ..
 
 def _progress(one: Built) -> str:
     seen = one.evidence
-    return (
-        f"{one.kinematics.mechanism.name:28}{one.statements:5} statements {one.seconds:6.2f} s"
-        f"   closure {seen.closure_residual:.0e}  round trip {seen.round_trip:.0e}  Jacobian {seen.jacobian:.0e}"
-        f"  {seen.solutions} solution{'' if seen.solutions == 1 else 's'} at {seen.poses} poses"
-    )
+    cost = f"{one.kinematics.mechanism.name:28}{one.statements:5} statements {one.seconds:6.2f} s"
+    poses = f"   {seen.poses} poses  closure {seen.closure_residual:.0e}"
+    if seen.inverted is None:
+        return cost + poses
+    found = seen.inverted
+    solutions = f"{found.solutions} solution{'' if found.solutions == 1 else 's'}"
+    return f"{cost}{poses}  round trip {found.round_trip:.0e}  Jacobian {found.jacobian:.0e}  {solutions}"
 
 
 if __name__ == "__main__":

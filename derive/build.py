@@ -12,7 +12,7 @@ from derive.branching import Assignment, assign, margin_lets, with_branch_signs
 from derive.carried import BASE_AXIS, FLANGE_AXIS, coupling_programs
 from derive.closure import flange_rotation, heading_of
 from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program, twist_program
-from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
+from derive.edges import finite, is_rotation, joint_lets
 from derive.forward import (
     Forward,
     at_point,
@@ -24,13 +24,14 @@ from derive.forward import (
 from derive.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
 from derive.kinematics import Freedom, Kinematics, Margin
 from derive.legs import MARGIN
-from derive.mechanism import DescriptionError, Mechanism, Turning
+from derive.mechanism import ROTATION_ENTRIES, DescriptionError, Mechanism, Turning
 from derive.newton import START_POSITION, START_ROTATION, at_given, at_home, found_from, search_program
 from derive.parameters import machine_parameters, setup_program
 from derive.passes import assemble, hoist
 from derive.platform import platform_checks, platform_singularity
 from derive.pose import pose_of
 from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real, shared
+from derive.search import RANK
 from derive.searching import DETERMINANT, branch_statements, determinant_margin, margin_statements, solve_both
 from derive.shared_names import refuse_shared_names
 from derive.solve import Unsolved
@@ -111,7 +112,8 @@ def _searching(mechanism: Mechanism) -> Kinematics:
     programs = [
         forward_program(mechanism, replace(both.forward, statements=statements), margins),
         orientation_program(both.forward),
-        inverse_program("branch", mechanism, both.closed, branch_statements(both)),
+        inverse_program("branch", mechanism, both.closed, branch_statements(both, is_ranked=False)),
+        inverse_program("ranked", mechanism, both.closed, branch_statements(both, is_ranked=True)),
         _limits_program(mechanism),
         assemble("singularity", (*both.forward.statements, *determinant, margin), [Output(DETERMINANT.name, margin.name)]),
         jacobian_program(mechanism, both.forward),
@@ -159,6 +161,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
         freedom=_freedom(mechanism),
         reads_rotation=mechanism.task.turning is not Turning.NONE,
         forward_from=finished.get("forward_from"),
+        ranked=finished.get("ranked"),
         twist=finished.get("twist"),
         compatible=finished.get("compatible"),
         carried=finished.get("carried"),
@@ -171,7 +174,7 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
     allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
     allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
-    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}
+    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS, RANK)}
     strangers = [s.name for s in program.inputs if s.name not in allowed]
     if strangers:
         raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.closure import flange_rotation
-from derive.edges import ROTATION_ENTRIES, finite, is_rotation
+from derive.edges import finite, is_rotation
 from derive.frames import Factor, Motion
-from derive.mechanism import COORDINATE_NAMES, Mechanism, Turning
+from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, Mechanism, Turning
 from derive.passes import assemble
 from derive.program import HELD, Let, Output, Program, Require, Root, Statement, Status, real
 

@@ -13,16 +13,14 @@ import sympy as sp
 
 from derive.algebra import cosine, is_compound, polynomial, reduce_units, sine, split_known
 from derive.frames import Chain, Factor, Motion, Txyz
-from derive.mechanism import DescriptionError, Joint, Mechanism, Rod, Role, Turning
+from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, DescriptionError, Joint, Mechanism, Rod, Role, Turning
 from derive.pose import pose_of
 from derive.problem import Equation
 from derive.program import DEGREE, Let, real
 from derive.splits import Commanded, Unknowns, is_spatial, split_positions
 
-COORDINATES = ("x", "y", "z")
-ROTATION_ENTRIES = tuple(real(f"r{i}{j}") for i in (1, 2, 3) for j in (1, 2, 3))
 HEADING = real("heading")
-OFFSET = tuple(real(f"point_{c}") for c in COORDINATES)
+OFFSET = tuple(real(f"point_{c}") for c in COORDINATE_NAMES)
 """The point off the flange, in flange coordinates."""
 
 
@@ -140,13 +138,13 @@ def heading_of(chain: Chain) -> sp.Expr:
 def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
     """The closure of the position of a point off the flange; joints that are not unknown are frozen."""
     if mechanism.chain is None:
-        return _stated_closure(mechanism, dict(zip(COORDINATES, OFFSET, strict=True)))
+        return _stated_closure(mechanism, dict(zip(COORDINATE_NAMES, OFFSET, strict=True)))
     factors = (*mechanism.chain.factors, *Txyz(*OFFSET).factors)
     symbols = {j.symbol for j in unknown}
     last = max((i for i, f in enumerate(factors) if f.motion is Motion.TURN and f.amount.free_symbols & symbols), default=-1)
     tool = pose_of(Chain(factors[last + 1 :])).position
     lets: list[Let] = []
-    entries = [_named_tool(mechanism, entry, f"tool_{c}", symbols, lets) for entry, c in zip(tool, COORDINATES, strict=True)]
+    entries = [_named_tool(mechanism, entry, f"tool_{c}", symbols, lets) for entry, c in zip(tool, COORDINATE_NAMES, strict=True)]
     seen = Chain(factors[: last + 1]) * Txyz(*entries)
     if is_spatial(mechanism.chain):
         return replace(_spatial_closure(mechanism, seen, unknown), lets=tuple(lets))
@@ -170,7 +168,7 @@ def _named_tool(
 def _position_closure(mechanism: Mechanism, position: sp.ImmutableMatrix) -> Closure:
     equations: list[Equation] = []
     plane: sp.Expr | None = None
-    for value, name in zip(position, COORDINATES, strict=True):
+    for value, name in zip(position, COORDINATE_NAMES, strict=True):
         if name in mechanism.task.position:
             equations.append(_equation(mechanism, name, value - real(name)))
         elif mechanism.task.position:
@@ -187,7 +185,7 @@ def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: s
     """
     lets = tuple(Let(real(f"flange_{c}"), real(c) - o, "the flange behind the point") for c, o in offset.items())
     table = {real(c): real(f"flange_{c}") for c in offset}
-    wanted = {j.symbol for j in mechanism.joints} if known == "span" else set(map(real, COORDINATES))
+    wanted = {j.symbol for j in mechanism.joints} if known == "span" else set(map(real, COORDINATE_NAMES))
     equations = [
         _equation(mechanism, _label(e, number), sp.sympify(e).xreplace(table))
         for number, e in enumerate(mechanism.closure, 1)
@@ -210,7 +208,7 @@ def _rod_equation(
     unknown = {s for v in wanted for s in (v, sine(v), cosine(v))}
     lets: list[Let] = []
     total: sp.Expr = -(rod.length**2)
-    for name, plate, base in zip(COORDINATES, rod.plate, rod.base, strict=False):
+    for name, plate, base in zip(COORDINATE_NAMES, rod.plate, rod.base, strict=False):
         between = with_fixed_angles(mechanism, (plate - base).xreplace(table))
         form = polynomial(between, all_angles(mechanism), signs_of(mechanism))
         moving, known = split_known(form, unknown)
@@ -227,7 +225,7 @@ def _rod_equation(
 def _rod_scales(mechanism: Mechanism, rod: Rod) -> dict[sp.Symbol, sp.Expr]:
     """2 * length * how fast an end of the rod moves with a joint or with the position, where that is a constant."""
     scales: dict[sp.Symbol, sp.Expr] = {}
-    for symbol in (*(j.symbol for j in mechanism.joints), *(real(c) for c in COORDINATES)):
+    for symbol in (*(j.symbol for j in mechanism.joints), *(real(c) for c in COORDINATE_NAMES)):
         rates = [sp.diff(p - b, symbol) for p, b in zip(rod.plate, rod.base, strict=True)]
         square = polynomial(with_fixed_angles(mechanism, sum(r**2 for r in rates)), all_angles(mechanism), signs_of(mechanism))
         if square != 0 and not square.free_symbols & set(_moving_symbols(mechanism)):
@@ -237,11 +235,11 @@ def _rod_scales(mechanism: Mechanism, rod: Rod) -> dict[sp.Symbol, sp.Expr]:
 
 def _moving_symbols(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
     joints = [j.symbol for j in mechanism.joints]
-    return (*joints, *(f(a) for a in joints for f in (sine, cosine)), *(real(c) for c in COORDINATES))
+    return (*joints, *(f(a) for a in joints for f in (sine, cosine)), *(real(c) for c in COORDINATE_NAMES))
 
 
 def _label(equation: sp.Expr, number: int) -> str:
-    held = [c for c in COORDINATES if real(c) in sp.sympify(equation).free_symbols]
+    held = [c for c in COORDINATE_NAMES if real(c) in sp.sympify(equation).free_symbols]
     return held[0] if len(held) == 1 else f"closure_{number}"
 
 

@@ -10,9 +10,8 @@ from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
-from derive.edges import ROTATION_ENTRIES
 from derive.legs import names, of, turned
-from derive.mechanism import Mechanism, Rod
+from derive.mechanism import ROTATION_ENTRIES, Mechanism, Rod
 from derive.program import BOUNDARY, Let, Output, Require, Select, Statement, Status, real
 
 _HOME, _SEEN, _TURNED = "home_along", "plate_axis", "cone_axis"

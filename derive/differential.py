@@ -9,11 +9,11 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.closure import COORDINATES, ROTATION_ENTRIES, with_fixed_angles
+from derive.closure import with_fixed_angles
 from derive.forward import Forward
 from derive.frames import Chain, Motion
 from derive.kinematics import Margin
-from derive.mechanism import DescriptionError, Mechanism, Turning
+from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, DescriptionError, Mechanism, Turning
 from derive.parameters import SCALE
 from derive.passes import assemble
 from derive.platform import platform_jacobian
@@ -100,7 +100,7 @@ def _by_screws(mechanism: Mechanism, rows: Sequence[str]) -> sp.Matrix:
 def _screws(mechanism: Mechanism, chain: Chain) -> tuple[tuple[Screw, ...], sp.ImmutableMatrix]:
     """The screws of a chain and the place of its end; of a chain in space in the names of its frames."""
     if is_spatial(chain):
-        return walk(mechanism).screws, sp.ImmutableMatrix([real(c) for c in COORDINATES])
+        return walk(mechanism).screws, sp.ImmutableMatrix([real(c) for c in COORDINATE_NAMES])
     pose = pose_of(chain)
     return pose.screws, pose.position
 

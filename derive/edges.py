@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import sympy as sp
 
 from derive.algebra import cosine, sine
-from derive.closure import ROTATION_ENTRIES as ROTATION_ENTRIES
-from derive.mechanism import Joint, Mechanism
+from derive.mechanism import ROTATION_ENTRIES, Joint, Mechanism
 from derive.program import (
     DEGREE,
     LARGEST,

@@ -8,7 +8,6 @@ import sympy as sp
 
 from derive.algebra import cosine, sine
 from derive.closure import (
-    COORDINATES,
     HEADING,
     OFFSET,
     all_angles,
@@ -18,9 +17,9 @@ from derive.closure import (
     position_closure,
     signs_of,
 )
-from derive.edges import ROTATION_ENTRIES, finite, frozen_lets, joint_lets
+from derive.edges import finite, frozen_lets, joint_lets
 from derive.inverse import Inverse
-from derive.mechanism import DescriptionError, Mechanism, Turning
+from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, DescriptionError, Mechanism, Turning
 from derive.parameters import SCALE
 from derive.passes import assemble
 from derive.pose import pose_of
@@ -54,21 +53,21 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
     if mechanism.chain is not None:
         pose = pose_of(mechanism.chain)
         lets, values = named_trigonometry(mechanism, [*pose.position, *pose.rotation])
-        position = tuple(Let(real(c), v) for c, v in zip(COORDINATES, values[:3], strict=True))
+        position = tuple(Let(real(c), v) for c, v in zip(COORDINATE_NAMES, values[:3], strict=True))
         return Forward((*checks, *lets, *position), tuple(p.name for p in position), tuple(values[3:]))
     joints = angles_of(mechanism)
     trigonometric = tuple(Let(f(a), g(a)) for a in joints for f, g in ((cosine, sp.cos), (sine, sp.sin)))
     derivation = _solve_for_position(mechanism)
     slope = derivation.slopes[0] if derivation.slopes else None
     known = (*checks, *fixed_angle_lets(mechanism), *trigonometric, *_in_assembly_mode(derivation, mechanism))
-    position_values = tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATES)
+    position_values = tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATE_NAMES)
     return Forward(known, position_values, tuple(sp.eye(3)), slope)
 
 
 def _walked(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forward:
     """The pose of a chain that turns about several axes, frame by frame."""
     walked = walk(mechanism)
-    names = (*(real(c) for c in COORDINATES), *ROTATION_ENTRIES)
+    names = (*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES)
     pose = tuple(Let(n, v) for n, v in zip(names, (*walked.position, *walked.rotation), strict=True))
     return Forward((*checks, *walked.statements, *pose), names[:3], names[3:])
 
@@ -126,18 +125,18 @@ def _domains(mechanism: Mechanism) -> tuple[Require, ...]:
 
 def at_point(forward: Forward) -> Forward:
     """The same for a point off the flange: x, y and z are where that point is."""
-    flange = {real(c): real(f"flange_{c}") for c in COORDINATES}
+    flange = {real(c): real(f"flange_{c}") for c in COORDINATE_NAMES}
     statements: list[Statement] = [rewritten(s, lambda e: e.xreplace(flange)) for s in forward.statements]
     statements = [replace(s, name=flange.get(s.name, s.name)) if isinstance(s, Let) else s for s in statements]
     behind = [sp.sympify(p).xreplace(flange) for p in forward.position]
     arm = sp.Matrix(3, 3, forward.rotation) * sp.Matrix(OFFSET)
-    point = tuple(Let(real(c), p + a) for c, p, a in zip(COORDINATES, behind, arm, strict=True))
+    point = tuple(Let(real(c), p + a) for c, p, a in zip(COORDINATE_NAMES, behind, arm, strict=True))
     return replace(forward, statements=(*statements, *point), position=tuple(p.name for p in point))
 
 
 def forward_program(mechanism: Mechanism, forward: Forward, margins: tuple[Let, ...]) -> Program:
     """Position, rotation, and the signed margin of every branch."""
-    outputs = [Output(c, v) for c, v in zip(COORDINATES, forward.position, strict=True)]
+    outputs = [Output(c, v) for c, v in zip(COORDINATE_NAMES, forward.position, strict=True)]
     outputs += _rotation_outputs(forward)
     outputs += [Output(m.name.name, m.name) for m in margins]
     return assemble("forward", (*forward.statements, *margins), outputs)

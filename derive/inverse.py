@@ -8,7 +8,6 @@ import sympy as sp
 
 from derive.algebra import polynomial
 from derive.closure import (
-    COORDINATES,
     HEADING,
     OFFSET,
     Closure,
@@ -21,7 +20,6 @@ from derive.closure import (
     signs_of,
 )
 from derive.edges import (
-    ROTATION_ENTRIES,
     axis_lets,
     finite,
     free,
@@ -31,14 +29,14 @@ from derive.edges import (
     reference_lets,
 )
 from derive.frames import Motion
-from derive.mechanism import Joint, Mechanism, Turning
+from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, Joint, Mechanism, Turning
 from derive.parameters import SCALE
 from derive.passes import assemble
 from derive.problem import Problem
 from derive.program import FREE_ANGLE, PLANE, Let, Output, Program, Require, Root, Select, Statement, Status, real
 from derive.solve import Derivation, solve
 
-POSITION = tuple(real(c) for c in COORDINATES)
+POSITION = tuple(real(c) for c in COORDINATE_NAMES)
 
 
 @dataclass(frozen=True)

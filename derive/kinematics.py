@@ -39,17 +39,25 @@ class Margin:
 
 
 @dataclass(frozen=True)
-class Evidence:
-    """What the independent witness measured, rounded up so that it reads the same on every machine."""
+class Inverted:
+    """What was measured of the inverse and of the Jacobian."""
 
-    poses: int
-    closure_residual: float
     round_trip: float
     jacobian: float
     solutions: int
     """Real solutions found by multi-start root finding, agreeing with the slots at every sampled pose."""
     missed: tuple[int, int] | None = None
     """Of a search: how many solutions no slot held, of how many in all."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What the independent witness measured, rounded up so that it reads the same on every machine."""
+
+    poses: int
+    closure_residual: float
+    inverted: Inverted | None
+    """None for a mechanism without joints: there is nothing to invert."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +74,8 @@ class Kinematics:
                      None where forward kinematics does not iterate
     orientation      axis_* → r11…r33
     branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*; one branch, periods included, limits not
+    ranked           as branch, and `rank`: 0 for the solution nearest to the reference, 1 for the next; None where a branch of a
+                     pose has one solution at most
     limits           axis_* → nothing; its conditions are the axis limits and the limits of coupled quantities
     singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size
     jacobian         axis_* → j11, j12, … (row, column from 1): rows are `rows`, columns the axes; per radian
@@ -105,6 +115,7 @@ class Kinematics:
     freedom: Freedom
     reads_rotation: bool
     forward_from: Program | None = None
+    ranked: Program | None = None
     twist: Program | None = None
     compatible: Program | None = None
     carried: Program | None = None

@@ -12,8 +12,7 @@ from dataclasses import replace
 
 import sympy as sp
 
-from derive.edges import ROTATION_ENTRIES
-from derive.mechanism import DescriptionError, Mechanism, Rod, on_plate
+from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, DescriptionError, Mechanism, Rod, on_plate
 from derive.program import SHORTEST_LINK, Let, Root, Select, real
 
 ASSEMBLY_SIGN = real("assembly_sign")
@@ -24,8 +23,7 @@ MIN_TYPE2_MARGIN = "min_type2_margin"
 DETERMINANT = real("determinant")
 RADIUS = real("platform_radius")
 MARGIN = "rods_dependent"
-COORDINATES = ("x", "y", "z")
-POSITION = tuple(map(real, COORDINATES))
+POSITION = tuple(map(real, COORDINATE_NAMES))
 ANGLES = ("roll", "pitch", "yaw")
 HOME_ROTATION = tuple(real(f"home_{r.name}") for r in ROTATION_ENTRIES)
 
@@ -34,7 +32,7 @@ Vector = tuple[sp.Expr, ...]
 
 def names(word: str, rod: Rod) -> tuple[sp.Symbol, ...]:
     """The names of a vector that belongs to a rod: `span_1_x` and so on."""
-    return tuple(real(f"{word}_{rod.name}_{c}") for c in COORDINATES)
+    return tuple(real(f"{word}_{rod.name}_{c}") for c in COORDINATE_NAMES)
 
 
 def of(word: str, rod: Rod) -> sp.Symbol:

@@ -32,19 +32,21 @@ from derive.dimensions import (
 )
 from derive.frames import Chain
 from derive.joints import COORDINATE_NAMES, Interval, Joint, Kind, arc, helical, linear, rotary
-from derive.program import real
+from derive.program import Let, real
 from derive.quantity import Quantity
 
 TURN = 2 * sp.pi
 X, Y, Z = (Quantity(real(name)) for name in COORDINATE_NAMES)
 """The commanded position, for closures that are not a chain."""
 ROTATION = sp.ImmutableMatrix(3, 3, [real(f"r{i}{j}") for i in "123" for j in "123"])
+ROTATION_ENTRIES: tuple[sp.Symbol, ...] = tuple(ROTATION)
 """The commanded rotation, for closures that follow the whole of it."""
 
 
 __all__ = [
     "COORDINATE_NAMES",
     "ROTATION",
+    "ROTATION_ENTRIES",
     "TURN",
     "Assembly",
     "Bound",
@@ -196,6 +198,8 @@ class Constraint:
 
     condition: sp.Basic
     message: str
+    steps: tuple[Let, ...] = ()
+    """Values under names that this condition and those after it read."""
 
 
 class Turning(Enum):

@@ -13,12 +13,11 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.edges import ROTATION_ENTRIES, finite, is_rotation, joint_lets
+from derive.edges import finite, is_rotation, joint_lets
 from derive.forward import Forward
 from derive.legs import (
     ANGLES,
     ASSEMBLY_SIGN,
-    COORDINATES,
     DETERMINANT,
     HOME_ROTATION,
     POSITION,
@@ -35,7 +34,7 @@ from derive.legs import (
     span,
     turned,
 )
-from derive.mechanism import Mechanism
+from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, Mechanism
 from derive.passes import assemble
 from derive.program import (
     CONVERGED,
@@ -59,7 +58,7 @@ SEARCH = "find_platform"
 """The name of the program."""
 LIMIT = 20
 """Passes of the loop: from the neighbouring pose it takes four."""
-START_POSITION = tuple(real(f"start_{c}") for c in COORDINATES)
+START_POSITION = tuple(real(f"start_{c}") for c in COORDINATE_NAMES)
 START_ROTATION = tuple(real(f"start_{r.name}") for r in ROTATION_ENTRIES)
 _TURN = tuple(real(f"turned_{r.name[1:]}") for r in ROTATION_ENTRIES)
 """The turn away from the start."""
@@ -163,8 +162,8 @@ def _pass(mechanism: Mechanism, bases: tuple[tuple[Let, ...], list[sp.Expr]]) ->
 
 def _step(mechanism: Mechanism) -> tuple[Let | Solve, ...]:
     """The rates of the state that let every error vanish, and by how much they are stretched to stay within bounds."""
-    twist = tuple(real(f"{c}_rate") for c in COORDINATES), tuple(real(f"swing_{c}") for c in COORDINATES)
-    spin = tuple(real(f"spin_{c}") for c in COORDINATES)
+    twist = tuple(real(f"{c}_rate") for c in COORDINATE_NAMES), tuple(real(f"swing_{c}") for c in COORDINATE_NAMES)
+    spin = tuple(real(f"spin_{c}") for c in COORDINATE_NAMES)
     size = real("size")
     too_large = sp.Gt(size, sp.Rational(1, 2))
     shares = [*(v / SCALE for v in twist[0]), *(real(f"{a}_rate") for a in ANGLES)]

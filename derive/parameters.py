@@ -71,6 +71,7 @@ def setup_program(mechanism: Mechanism, parameters: tuple[Parameter, ...], hoist
     """Check every parameter; outputs are the parameters themselves, the effective limits, and what was hoisted."""
     body: list[Statement] = [condition for p in parameters for condition in _range_of(p)]
     for constraint in mechanism.constraints:
+        body += constraint.steps
         body.append(Require(_inequality(constraint.condition), Status.NOT_INITIALIZED, constraint.message))
     outputs = [Output(p.name, real(p.name)) for p in parameters if not p.name.startswith(("lower_", "upper_"))]
     for joint in mechanism.joints:

@@ -10,11 +10,9 @@ from collections.abc import Sequence
 import sympy as sp
 
 from derive.cones import cone_axes, cone_checks, cone_constants
-from derive.edges import ROTATION_ENTRIES
 from derive.legs import (
     ANGLES,
     ASSEMBLY_SIGN,
-    COORDINATES,
     DETERMINANT,
     HOME_ROTATION,
     MARGIN,
@@ -32,7 +30,7 @@ from derive.legs import (
     span,
     turned,
 )
-from derive.mechanism import DescriptionError, Mechanism, Rod
+from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, DescriptionError, Mechanism, Rod
 from derive.passes import assemble
 from derive.program import (
     FREE_ANGLE,
@@ -69,7 +67,7 @@ def machine_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 def _platform_radius(mechanism: Mechanism) -> tuple[Let, ...]:
     points = [point_of(rod) for rod in mechanism.rods]
-    centre = tuple(real(f"centre_{c}") for c in COORDINATES)
+    centre = tuple(real(f"centre_{c}") for c in COORDINATE_NAMES)
     means = (sp.Add(*column) / len(points) for column in zip(*points, strict=True))
     squares = [(c - m) ** 2 for point in points for c, m in zip(point, centre, strict=True)]
     spread = real("spread")
@@ -130,7 +128,8 @@ def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[St
     joints = [j.symbol for j in mechanism.joints]
     driven = sp.Matrix([_driven(rod).jacobian(joints) for rod in mechanism.rods]) * motors
     width = len(joints)
-    entries = [real(f"column_{k % width + 1}_{'vw'[k // width // 3]}{COORDINATES[k // width % 3]}") for k in range(6 * width)]
+    words = (*(f"v{c}" for c in COORDINATE_NAMES), *(f"w{c}" for c in COORDINATE_NAMES))
+    entries = [real(f"column_{column}_{word}") for word in words for column in range(1, width + 1)]
     held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, "nothing controls the plate")
     system = Solve(tuple(entries), rows(mechanism), tuple(driven), None, "how the legs move the platform")
     return (held, system), [e if k // width < 3 else e / RADIUS for k, e in enumerate(entries)]

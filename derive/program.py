@@ -49,6 +49,18 @@ SOLVABLE = sp.Float("1e30")
 """Linear equations are solved where all their numbers are at most this size, and the largest at least its reciprocal."""
 CONVERGED = sp.Float("1e-11")
 """An iteration has converged where what is left of a length is at most this share of the machine's scale."""
+SCAN_STEP = DEGREE / 2
+"""A search along a joint looks at trials this far apart."""
+SCAN_GROWTH = sp.Integer(8)
+"""Near the reference the steps of a search are smaller, and grow by this factor."""
+SCAN_ROOT = sp.Float("1e-14")
+"""A search has closed in on a root where the scaled residual is at most this."""
+LEAST_CROSSING, LARGEST_CROSSING = sp.Float("1e-13"), sp.Float("1e-6")
+"""How much a scaled residual changes over the first steps to both sides of a root: less is no crossing, more a jump."""
+REFINEMENTS = 100
+"""Trials that close in on one root of a search, at most."""
+SCAN_PASSES = 1800
+"""Trials of a search in all: the scan, and some thirty roots of other branches that are closed in on the way."""
 TIE = sp.Float("1e-6")
 """An automatic choice takes a later branch only where its squared distance is smaller by more than this."""
 EDGE = sp.Float("1e-9")

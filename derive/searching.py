@@ -8,7 +8,7 @@ det J over the slopes of the trial's steps: the determinant is the one margin, a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,7 +25,7 @@ from derive.frames import Chain
 from derive.inverse import Inverse, solve_at, solve_pose
 from derive.mechanism import Branch, DescriptionError, Mechanism
 from derive.parameters import SCALE
-from derive.passes import assemble
+from derive.passes import assemble, renamed
 from derive.program import (
     LIMIT,
     Let,
@@ -41,12 +41,11 @@ from derive.program import (
 )
 from derive.run import run
 from derive.sampling import sample_axes, sample_machine
-from derive.search import ACCEPTED, TRIED, Trial, search_loop
+from derive.search import ACCEPTED, RANK, TRIED, Trial, search_loop
 from derive.trigonometry import named_trigonometry
 
 SEARCHED = real("searched")
 DETERMINANT = real("determinant")
-MARGIN = "determinant"
 _HALF = sp.Rational(1, 2)
 _SAMPLES = 64
 
@@ -72,8 +71,8 @@ def solve_both(mechanism: Mechanism) -> Searching:
     simple = without_search(mechanism)
     closed = solve_pose(simple)
     trial = solve_at(mechanism, mechanism.search.joint)
-    if len(_left_over(trial)) != 1:
-        raise DescriptionError(f"with {mechanism.search.joint.name} known, {len(_left_over(trial))} conditions are left, not one")
+    if (left := len(trial.derivation.residuals)) != 1:
+        raise DescriptionError(f"with {mechanism.search.joint.name} known, {left} conditions are left, not one")
     if any(isinstance(s, Require) for s in trial.derivation.statements):
         raise DescriptionError(f"a trial along {mechanism.search.joint.name} must have a solution everywhere")
     found, asked = steps_and_rest(mechanism, trial, forward)
@@ -90,11 +89,6 @@ def without_search(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, chain=chain, branches=branches, search=None)
 
 
-def _left_over(trial: Inverse) -> list[sp.Expr]:
-    """What vanishes only at a root: a polynomial in names that is not zero by itself."""
-    return list(trial.derivation.residuals)
-
-
 def searched_flag(mechanism: Mechanism) -> Let:
     """Whether the parameter is not zero."""
     assert mechanism.search is not None
@@ -102,8 +96,8 @@ def searched_flag(mechanism: Mechanism) -> Let:
     return Let(SEARCHED, Select(is_given, sp.Integer(1), sp.Integer(0)), f"whether to search along {mechanism.search.joint.name}")
 
 
-def branch_statements(both: Searching) -> tuple[Statement, ...]:
-    """The inverse of one branch, up to the cosine and sine of every joint."""
+def branch_statements(both: Searching, *, is_ranked: bool) -> tuple[Statement, ...]:
+    """The inverse of one branch, up to the cosine and sine of every joint; ranked, of its root number `rank` from 0."""
     mechanism = both.mechanism
     assert mechanism.search is not None
     crossing = next(b for b in mechanism.branches if b.is_crossing)
@@ -112,18 +106,24 @@ def branch_statements(both: Searching) -> tuple[Statement, ...]:
     solved = with_branch_signs(both.closed.derivation.statements, both.closed_branches)
     closed = _named_apart(_only(solved, is_searched), "closed")
     trial = _trial(both)
-    loop = search_loop(trial, free(mechanism.search.joint), sigma, sp.Lt(SEARCHED, _HALF))
+    loop = search_loop(trial, free(mechanism.search.joint), sigma, sp.Lt(SEARCHED, _HALF), is_ranked)
     bound = set(binds(loop))
     rest = tuple(s for s in trial.statements if not (isinstance(s, Let) and s.name in bound))
     return (
         searched_flag(mechanism),
         *closed,
         Require(sp.Or(is_searched, sp.Gt(sigma, 0)), Status.UNREACHABLE, "without the offset there is no second crossing"),
+        *(_first_only(is_searched) if is_ranked else ()),
         loop,
         Require(sp.Or(sp.Lt(SEARCHED, _HALF), sp.Gt(ACCEPTED, _HALF)), Status.UNREACHABLE, "no root in this branch"),
         *rest,
         *_chosen(both, is_searched),
     )
+
+
+def _first_only(is_searched: sp.Basic) -> tuple[Require, ...]:
+    allowed = sp.Or(is_searched, sp.Lt(RANK, _HALF))
+    return (Require(allowed, Status.UNREACHABLE, "without the offset a branch has one solution"),)
 
 
 def _chosen(both: Searching, is_searched: sp.Basic) -> Iterable[Let]:
@@ -140,7 +140,7 @@ def _trial(both: Searching) -> Trial:
     joint = mechanism.search.joint.symbol
     own = (Let(cosine(joint), sp.cos(TRIED)), Let(sine(joint), sp.sin(TRIED)))
     solved = with_branch_signs(both.trial.derivation.statements, both.trial_branches)
-    lets, indicators = named_trigonometry(mechanism, [with_fixed_angles(mechanism, b.indicator * b.signs[0]) for b in both.asked])
+    lets, indicators = _indicators(both)
     asked = [real(f"indicator_{b.name}") for b in both.asked]
     solved_names = {s.name for s in (*own, *solved) if isinstance(s, Let)}
     if strange := [let.name.name for let in lets if let.name not in solved_names]:
@@ -152,23 +152,27 @@ def _trial(both: Searching) -> Trial:
             *both.trial.closure.lets,
             *solved,
             *(Let(n, v / SCALE) for n, v in zip(asked, indicators, strict=True)),
-            Let(residual, _left_over(both.trial)[0] / SCALE**2),
+            Let(residual, both.trial.derivation.residuals[0] / SCALE**2),
         ),
         "tried",
     )
     fits = [sp.Ge(real(f"sigma_{b.name}") * real(f"{n.name}_tried"), -LIMIT) for b, n in zip(both.asked, asked, strict=True)]
-    return Trial(statements, real("residual_tried"), sp.And(*fits), sp.true)
+    return Trial(statements, real("residual_tried"), sp.And(*fits))
 
 
-def _named_apart(statements: Iterable[Statement], word: str) -> tuple[Statement, ...]:
-    """The statements with the word behind every name that they bind."""
+def _indicators(both: Searching) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
+    """What the branches that no step decides are asked by, and the sines and cosines in it."""
+    lets, indicators = named_trigonometry(
+        both.mechanism, [with_fixed_angles(both.mechanism, b.indicator * b.signs[0]) for b in both.asked]
+    )
+    return tuple(lets), tuple(indicators)
+
+
+def _named_apart(statements: Iterable[Statement], word: str, own: Container[sp.Symbol] = ()) -> tuple[Statement, ...]:
+    """The statements with the word behind every name that they bind, but for own names."""
     kept = list(statements)
-    table = {name: real(f"{name.name}_{word}") for s in kept for name in binds(s)}
-    renamed = []
-    for s in kept:
-        changed = rewritten(s, lambda e: e.xreplace(table))
-        renamed.append(replace(changed, name=table[changed.name]) if isinstance(changed, Let) else changed)
-    return tuple(renamed)
+    table = {n: n if n in own else real(f"{n.name}_{word}") for s in kept for n in binds(s)}
+    return tuple(renamed(rewritten(s, lambda e: e.xreplace(table)), lambda n: table[n]) for s in kept)
 
 
 def _only(statements: Iterable[Statement], otherwise: sp.Basic) -> tuple[Statement, ...]:
@@ -186,11 +190,11 @@ def margin_statements(both: Searching) -> tuple[tuple[Statement, ...], tuple[Let
     for word, inverse, assignments in (("closed", both.closed, both.closed_branches), ("tried", both.trial, both.trial_branches)):
         values = [Let(real(f"margin_{a.branch.name}"), a.margin(mechanism)) for a in assignments]
         at_axes = derivation_at_axes(mechanism, inverse, both.forward)
-        apart = _named_apart_from((*at_axes, *values), own, word)
+        apart = _named_apart((*at_axes, *values), word, own)
         statements += [s for s in apart if not set(binds(s)) & own]
         for a in assignments:
             margins.setdefault(a.branch.name, {})[word] = real(f"margin_{a.branch.name}_{word}")
-    lets, indicators = named_trigonometry(mechanism, [with_fixed_angles(mechanism, b.indicator * b.signs[0]) for b in both.asked])
+    lets, indicators = _indicators(both)
     statements += [let for let in lets if let.name not in own]
     for b, value in zip(both.asked, indicators, strict=True):
         margins[b.name]["tried"] = value / SCALE
@@ -201,15 +205,6 @@ def margin_statements(both: Searching) -> tuple[tuple[Statement, ...], tuple[Let
         for name, both_values in margins.items()
     ]
     return tuple(statements), (*found, _crossing_margin(both, scaled, margins, is_searched))
-
-
-def _named_apart_from(statements: Sequence[Statement], own: set[sp.Symbol], word: str) -> tuple[Statement, ...]:
-    table = {n: real(f"{n.name}_{word}") for s in statements for n in binds(s) if n not in own}
-    renamed = []
-    for s in statements:
-        changed = rewritten(s, lambda e: e.xreplace(table))
-        renamed.append(replace(changed, name=table.get(changed.name, changed.name)) if isinstance(changed, Let) else changed)
-    return tuple(renamed)
 
 
 def _crossing_margin(

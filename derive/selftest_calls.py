@@ -9,9 +9,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.edges import ROTATION_ENTRIES
 from derive.kinematics import Kinematics
 from derive.legs import HOME_ROTATION
+from derive.mechanism import ROTATION_ENTRIES
 from derive.program import EDGE, FREE_ANGLE, TIE, Program, Status
 from derive.run import Array, evaluate, run
 from derive.selftest_cases import Bytes, Reals

@@ -16,11 +16,11 @@ import sympy as sp
 from derive.algebra import cosine, is_compound, polynomial, reduce_units, sine
 from derive.composite import name_of, terms_of
 from derive.frames import Chain, Factor, Motion
+from derive.joints import COORDINATE_NAMES
 from derive.pose import pose_of
 from derive.problem import Equation, Problem
 from derive.program import Let, real
 
-COORDINATES = ("x", "y", "z")
 _MOST_UNKNOWN = 2
 """No subproblem takes an equation with more unknown angles."""
 
@@ -68,7 +68,7 @@ class Unknowns:
 
 def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> tuple[Equation, ...]:
     """The position equations of a chain, at the split that leaves some unknown alone, else those of the whole chain."""
-    point = [real(c) for c in COORDINATES]
+    point = [real(c) for c in COORDINATE_NAMES]
     factors, target = chain.factors, Target(tuple(point))
     if commanded.columns:
         factors, target = _behind_the_wrist(chain, sp.Matrix(point), commanded, unknowns)
@@ -108,7 +108,7 @@ def _movers(chain: Chain, unknowns: Unknowns) -> set[sp.Symbol]:
 def _wrist(point: sp.Matrix, rotation: sp.Matrix, seen: Sequence[sp.Expr]) -> Target:
     moved = point + rotation * sp.Matrix(seen)
     lets = []
-    for c, value in zip(COORDINATES, moved, strict=True):
+    for c, value in zip(COORDINATE_NAMES, moved, strict=True):
         note = "the point that the last joints turn about" if c == "x" else ""
         lets.append(Let(real(f"wrist_{c}"), value, note))
     if not any(is_compound(let.value) for let in lets):
@@ -126,7 +126,7 @@ def _equations(factors: Sequence[Factor], first: int, target: Target, unknowns: 
     seen = front.rotation.T * (sp.Matrix(target.point) - front.position)
     word = "" if first < 0 else f"_from_{_movers_name(factors[first], unknowns)}"
     found = []
-    for c, left, right in zip(COORDINATES, seen, rest.position, strict=True):
+    for c, left, right in zip(COORDINATE_NAMES, seen, rest.position, strict=True):
         form = unknowns.form(right - left)
         used = tuple(let for let in target.lets if let.name in form.free_symbols)
         found.append(Equation(f"{c}{word}", form, used))

@@ -154,14 +154,18 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
 
 
 def _constraints(mechanism: Mechanism) -> Iterator[str]:
-    nominal = {p.name: p.nominal for p in mechanism.parameters}
-    names = {p.name for p in mechanism.parameters}
+    values: dict[str, sp.Expr] = {p.name: sp.Float(p.nominal) for p in mechanism.parameters} | {DEGREE.name: sp.pi / 180}
+
+    def at_nominal(expression: sp.Basic) -> sp.Basic:
+        return expression.subs({s: values.get(s.name, sp.Integer(0)) for s in expression.free_symbols})
+
     for constraint in mechanism.constraints:
-        strange = sorted(s.name for s in constraint.condition.free_symbols - {DEGREE} if s.name not in names)
+        for step in constraint.steps:
+            values[step.name.name] = sp.Float(at_nominal(step.value))
+        strange = sorted(s.name for s in constraint.condition.free_symbols if s.name not in values)
         if strange:
             yield f"constraint {constraint.message!r} reads {strange[0]!r}, which is no parameter of this mechanism"
-        values = {s: nominal.get(s.name, 0.0) for s in constraint.condition.free_symbols} | {DEGREE: sp.pi / 180}
-        if constraint.condition.subs(values) != sp.true:
+        if at_nominal(constraint.condition) != sp.true:
             yield f"the nominal parameters break the constraint {constraint.message!r}"
 
 

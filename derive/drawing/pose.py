@@ -8,9 +8,8 @@ import numpy as np
 
 from derive.drawing.labels import Values
 from derive.drawing.scene import Frame, frame_of
-from derive.edges import ROTATION_ENTRIES
 from derive.kinematics import Kinematics
-from derive.mechanism import COORDINATE_NAMES, DescriptionError
+from derive.mechanism import DescriptionError
 from derive.program import Status
 from derive.run import evaluate
 from derive.selftest_calls import FRAME, Tested, forward, tested
@@ -78,6 +77,4 @@ def values_at(machine: Tested, pose: Pose) -> Values:
         motor = np.asarray(axis * float(evaluate(joint.unit, values)))
         values[joint.motor.name] = motor
         values[joint.symbol.name] = np.asarray(motor + evaluate(joint.coupling, values))
-    names = (*COORDINATE_NAMES, *(r.name for r in ROTATION_ENTRIES))
-    assert names == FRAME
     return values | {name: np.asarray(value) for name, value in zip(FRAME, pose.frame, strict=True)}

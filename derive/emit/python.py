@@ -33,6 +33,7 @@ _FIXED = (
     "softkin/_offset.py",
     "softkin/_orientation.py",
     "softkin/_scalar.py",
+    "softkin/_search.py",
     "softkin/_solutions.py",
     "softkin/_start.py",
     "softkin/_table.py",
@@ -164,6 +165,7 @@ def _bases(kin: Kinematics) -> dict[str, str]:
     """The base classes by the module they are in: what the mechanism offers beyond the calls that all have."""
     found = {"_offset": "OffsetKinematics"} if kin.offset_branch is not None else {}
     found |= {"_orientation": "OrientationKinematics"} if kin.mechanism.is_orientation else {}
+    found |= {"_search": "SearchedInverse"} if kin.ranked is not None else {}
     found |= {"_start": "IterativeForward"} if kin.forward_from is not None else {}
     found |= {"_twist": "TwistChoice"} if kin.chooses_twist else {}
     return found or {"_core": "Mechanism"}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from derive.emit.python_calls import GIVEN
 from derive.emit.python_program import Argument, Method, Shape
 from derive.kinematics import Kinematics
@@ -15,6 +17,7 @@ IMAGE: tuple[Shape, ...] = (
     ("u_x", "u_y", "u_z"),
 )
 _ROTATION = Argument("rotation", "Rotation", ROTATION)
+_RANK = Argument("number", "Reals", ("rank",))
 _AXES = tuple(Argument(name, "Vector", tuple(f"{name}_{c}" for c in "xyz")) for name in ("flange_axis", "base_axis"))
 
 
@@ -29,7 +32,7 @@ def methods(kin: Kinematics) -> list[Method]:
         *shared(kin),
         *forwards(kin),
         Method("orientation", "The rotation of the frame.", kin.orientation, (axes,), "Rotation", ROTATION),
-        branch(kin),
+        ranked(kin) or branch(kin),
         limits(kin),
         Method("singularity", "The margins, each zero at its singularity.", kin.singularity, (axes,), "Reals", margins),
         Method("jacobian", "The Jacobian by rows, per radian.", kin.jacobian, (axes,), "Matrix", rows),
@@ -91,6 +94,15 @@ def branch(kin: Kinematics) -> Method:
     pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
     text = "The axes of one branch, periods included, limits not."
     return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape)
+
+
+def ranked(kin: Kinematics) -> Method | None:
+    """Inverse kinematics on one branch that may have several solutions."""
+    if kin.ranked is None:
+        return None
+    plain = branch(kin)
+    text = "The axes of one branch: of its solutions the one that has so many others nearer to the reference."
+    return replace(plain, name="ranked", summary=text, program=kin.ranked, arguments=(*plain.arguments, _RANK))
 
 
 def carried(kin: Kinematics) -> list[Method]:

@@ -87,15 +87,19 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
     if found is None:
         yield "None."
         return
-    yield from wrap(
+    text = (
         f"The formulas were derived from the closure equations and checked against them at {found.poses} poses: "
-        f"residual {found.closure_residual:.0e}, inverse after forward {found.round_trip:.0e}, Jacobian against "
-        f"automatic differentiation {found.jacobian:.0e}; {found.solutions} solutions were found by multi-start root "
-        "finding, each of them a solution of these formulas. No run on a controller.",
-        _WIDTH,
+        f"residual {found.closure_residual:.0e}"
     )
-    if found.missed is not None:
-        missed, total = found.missed
+    if (inverted := found.inverted) is not None:
+        text += (
+            f", inverse after forward {inverted.round_trip:.0e}, Jacobian against automatic differentiation "
+            f"{inverted.jacobian:.0e}; {inverted.solutions} solutions were found by multi-start root finding, each of them a "
+            "solution of these formulas"
+        )
+    yield from wrap(f"{text}. No run on a controller.", _WIDTH)
+    if inverted is not None and inverted.missed is not None:
+        missed, total = inverted.missed
         yield from wrap(f"A scan is no proof: it missed {missed} of {total} solutions in this check.", _WIDTH)
 
 

@@ -19,6 +19,7 @@ from derive.mechanism import (
     rod,
     rotary,
 )
+from derive.reach import discs_meet
 from derive.vectors import cross, dot, minus, triple, vector
 
 ARMS = ("1", "2", "3")
@@ -38,6 +39,8 @@ KNEES = [
 ]
 JOINTS = [vector(X + p * u[0], Y + p * u[1], Z) for p, u in zip(PLATE, OUT, strict=True)]
 RODS = [minus(joint, knee) for joint, knee in zip(JOINTS, KNEES, strict=True)]
+DRIVES = [vector((r - p) * u[0], (r - p) * u[1]) for r, p, u in zip(BASE, PLATE, OUT, strict=True)]
+REACHES = [inner + outer for inner, outer in zip(INNER, OUTER, strict=True)]
 TURN = cross(OUT[0], OUT[1]) + cross(OUT[1], OUT[2]) + cross(OUT[2], OUT[0])
 
 MECHANISM = Mechanism(
@@ -57,5 +60,6 @@ MECHANISM = Mechanism(
     assembly=assembly("tcp", triple(RODS), margin="rods_coplanar", handedness=TURN, below=-1, above=+1),
     constraints=(
         Constraint(abs(TURN) > 1e-6, "the arms must not all point the same way"),
+        *discs_meet(DRIVES, REACHES, "arms long enough to reach the plate"),
     ),
 )

@@ -18,6 +18,7 @@ from derive.mechanism import (
     optional_length,
     rod,
 )
+from derive.reach import discs_meet
 from derive.vectors import cross, minus, triple, vector
 
 L = length("arm_length", "Length of the rods", nominal=269.0)
@@ -61,5 +62,6 @@ MECHANISM = Mechanism(
             for k, d in enumerate(DISTANCES, 1)
         ),
         Constraint(abs(AREA) > 1e-6 * L**2, "the rails must not lie on a line"),
+        *discs_meet([carriage[:2] for carriage in CARRIAGES], [L, L, L], "rods long enough to reach the plate"),
     ),
 )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from derive.kinematics import Evidence, Kinematics
+from derive.kinematics import Evidence, Inverted, Kinematics
 from derive.witness.checks import check_forward, check_jacobian, check_margins
 from derive.witness.closure import closure_of
 from derive.witness.disagreement import Disagreement
@@ -27,7 +27,8 @@ def witness(kin: Kinematics) -> Evidence:
     try:
         closure = closure_of(kin.mechanism)
         if not kin.mechanism.joints:
-            return check_still(kin, closure)
+            poses, error = check_still(kin, closure)
+            return Evidence(poses, decade(error), None)
         samples = regular_samples(kin, closure)
         forward = max(check_forward(kin, closure, samples), check_orientation(kin, samples))
         jacobian = check_jacobian(kin, closure, samples)
@@ -40,10 +41,7 @@ def witness(kin: Kinematics) -> Evidence:
     return Evidence(
         poses=len(samples),
         closure_residual=decade(max(forward, inverse, offset)),
-        round_trip=decade(max(round_trip, offset_trip)),
-        jacobian=decade(jacobian),
-        solutions=solutions,
-        missed=missed,
+        inverted=Inverted(decade(max(round_trip, offset_trip)), decade(jacobian), solutions, missed),
     )
 
 

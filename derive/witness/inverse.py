@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from derive.kinematics import Kinematics
 from derive.program import Program, Status
 from derive.run import Array, run
+from derive.search import RANK
 from derive.witness.checks import CLEAR, CLOSURE_TOLERANCE, displacement, worst
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
@@ -56,11 +57,12 @@ def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tupl
     first = np.unique(samples.machine, return_index=True)[1]
     part = samples.take(np.arange(0, len(samples), _EVERY) if is_search else first)
     problem = problem_at(closure, part)
-    axes, ok = run_slots(kin, kin.branch, part, _commands(kin, part))
+    axes, ok = _ranks(kin, part)
     offered = [within_one_turn(problem, closure.joints(a, part.parameters)[:, :, 0] / problem.units) for a in axes]
     counts, missed = [], 0
     for row, found in enumerate(all_solutions(problem)):
         slots = np.array([offered[slot][row] for slot in np.flatnonzero(ok[:, row])]).reshape(-1, axes.shape[2])
+        slots = distinct(slots, problem.angles) if is_search else slots  # what is opposite the reference is met from both sides
         missing = _compare(kin, problem, (found, slots), describe(kin, part, row))
         missed += missing
         counts.append(len(found))
@@ -102,6 +104,17 @@ def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dic
     axes = np.stack([outputs[j.axis.name] for j in kin.mechanism.joints], axis=1)
     ok = np.asarray(np.broadcast_to(status == Status.OK, len(slots) * count), dtype=bool)
     return axes.reshape(len(slots), count, -1), ok.reshape(len(slots), count)
+
+
+def _ranks(kin: Kinematics, samples: Samples) -> Slots:
+    """Every slot, and where a branch of a pose may have several solutions one slot for each of them."""
+    if kin.ranked is None:
+        return run_slots(kin, kin.branch, samples, _commands(kin, samples))
+    found: list[Slots] = []
+    while not found or found[-1][1].any():
+        rank = np.full(len(samples), float(len(found)))
+        found.append(run_slots(kin, kin.ranked, samples, _commands(kin, samples) | {RANK.name: rank}))
+    return np.concatenate([axes for axes, _ in found]), np.concatenate([ok for _, ok in found])
 
 
 def _signs(kin: Kinematics) -> list[tuple[float, ...]]:

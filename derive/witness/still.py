@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from derive.kinematics import Evidence, Kinematics
+from derive.kinematics import Kinematics
 from derive.program import Status
 from derive.run import run
 from derive.witness.checks import CLOSURE_TOLERANCE
@@ -13,8 +13,8 @@ from derive.witness.disagreement import Disagreement
 from derive.witness.samples import SEED, random_machines
 
 
-def check_still(kin: Kinematics, closure: Closure) -> Evidence:
-    """The frame of every random machine; there is nothing to solve."""
+def check_still(kin: Kinematics, closure: Closure) -> tuple[int, float]:
+    """The frame of every random machine, how many there were, and the largest error; there is nothing to solve."""
     values = random_machines(kin, np.random.default_rng(SEED))
     parameters = np.stack([values[name] for name in closure.parameters], axis=1)
     outputs, status = run(kin.forward, values)
@@ -24,4 +24,4 @@ def check_still(kin: Kinematics, closure: Closure) -> Evidence:
     error = float(np.max(np.abs(pose - expected)))
     if error > CLOSURE_TOLERANCE or np.any(status != Status.OK):
         raise Disagreement(f"the frame of a mechanism without joints: error {error:.1e}")
-    return Evidence(poses=count, closure_residual=1e-12, round_trip=1e-12, jacobian=1e-12, solutions=1)
+    return count, error

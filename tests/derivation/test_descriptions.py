@@ -94,7 +94,8 @@ def test_every_slot_is_another_solution(name: str) -> None:
 @EVERY
 def test_the_witness_finds_no_other_solution(name: str) -> None:
     evidence = witness(built(name).kinematics)
-    assert evidence.solutions == len(built(name).slots)
+    assert evidence.inverted is not None
+    assert evidence.inverted.solutions == len(built(name).slots)
 
 
 @EVERY

@@ -9,6 +9,7 @@ _ALONE = re.compile(r"VAR|METHOD|FUNCTION|PROPERTY|TYPE|GET|END_|\{|TRAFO\.")
 """How lines begin that are no part of a statement."""
 _ENDS = (";", "THEN", "ELSE", "DO", "OF", ":")
 _VARIABLE = re.compile(r"\w+ : [^;]*;")
+_VALUES = re.compile(r":= \[ ?([^\[\]]*?) ?\];")
 _CONDITION = re.compile(r"(IF|ELSIF) .*THEN")
 _LONGEST_GROUP = 8
 """Lines in a group that may repeat: a condition with its refusal, a choice between two assignments."""
@@ -28,10 +29,12 @@ def abridged(text: str, seen: set[str]) -> str:
     """The text without what has a shape that is in `seen`, and the new shapes are then in it.
 
     Variables are left out, an empty statement stands for a statement, a name for a condition. Lines, or groups of
-    lines, that repeat the shape of those before them are left out too, and comments.
+    lines, that repeat the shape of those before them are left out too, and comments, and in a list of values those of the
+    shape of two others.
     """
     found: list[str] = []
-    for line in _statements(text):
+    for statement in _statements(text):
+        line = _VALUES.sub(_few, statement)
         is_old = shape(line) in seen
         if not is_old or _ALONE.match(line):
             found.append(line)
@@ -57,6 +60,14 @@ def _statements(text: str) -> list[str]:
             found.append(begun)
             begun = ""
     return list(filter(None, [*found, begun]))
+
+
+def _few(values: re.Match[str]) -> str:
+    kept: list[str] = []
+    for value in values[1].split(", "):
+        if sum(shape(value) == shape(other) for other in kept) < 2:
+            kept.append(value)
+    return f":= [{', '.join(kept)}];"
 
 
 def _condensed(given: list[str]) -> str:

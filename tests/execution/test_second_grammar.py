@@ -77,3 +77,5 @@ def test_what_is_the_same_to_a_grammar() -> None:
     seen: set[str] = set()
     assert abridged(text, seen) == "IF a > 1.0 THEN\nRETURN;\nEND_IF\nIF n THEN\n;\nEND_IF\nx := y;\n;\nx := -y;"
     assert abridged(text + "\nx := y\n  + x;", seen) == "IF n THEN\n;\nEND_IF\n;\nx := y + x;"
+    values = "A : ARRAY[0..3] OF LREAL :="
+    assert abridged(f"{values} [ 1.0, 2.0, -3.0, 4.0 ];", seen) == f"{values} [1.0, 2.0, -3.0];"

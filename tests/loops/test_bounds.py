@@ -42,6 +42,8 @@ FIVE_BAR = {"inner_arm": 100.0, "outer_arm": 200.0}
 TYPE_12 = {"link_length_1": 300.0, "link_length_2": 350.0, "link_length_3": 100.0, "link_length_4": 300.0, "link_length_5": 100.0}
 UPRIGHT = {"inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 0.0, "max_angle_ball_joint": 45.0}
 BIGLIDE = {"arm_length_1": 200.0, "arm_length_2": 100.0}
+T_LAYOUT = {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": -90.0}
+WIDE = T_LAYOUT | {f"base_radius_{i}": 9000.0 for i in "123"}
 IMPOSSIBLE = {
     "a plate smaller than its joints": ("Kin_Tripod_Rotary", TRIPOD, {"stewart_radius": 19.99, "distance": 40.0}, "stewart"),
     "rods that cannot reach": ("Kin_Tripod_Rotary", TRIPOD, {"arm_length_2": 339.99}, "reach"),
@@ -64,6 +66,8 @@ IMPOSSIBLE = {
     "a forearm too long behind": ("MC_KIN_TYPE_12_XY", TYPE_12, {"link_length_3": 701.0}, "link 3"),
     "a rod too long": ("MC_KIN_TYPE_12_XY", TYPE_12, {"link_length_4": 501.0}, "link 4"),
     "a crank too long": ("MC_KIN_TYPE_12_XY", TYPE_12, {"link_length_5": 701.0}, "link 5"),
+    "drives too far apart": ("Kin_Delta_P3C_Type3", DELTA, WIDE, "reach the plate"),
+    "rods too short for the rails": ("Kin_Tripod_P3Z", {"arm_length": 20.0} | RAILS, {}, "reach the plate"),
     "upright rails too far apart": ("Kin_Tripod_Linear", UPRIGHT, {"outer_radius": 461.0}, "reach the plate"),
     "two arms the same way": ("Kin_Delta_P3C_Type3", DELTA, {"azimuth_1": 0.0, "azimuth_2": 90.0, "azimuth_3": 90.0}, "azimuth"),
 }  # fmt: skip

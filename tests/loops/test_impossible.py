@@ -2,13 +2,34 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import softkin
+import sympy as sp
+from numpy.typing import NDArray
 from softkin import KinematicsError, Status
 
+from derive.reach import discs_meet
+from derive.vectors import vector
+
+Array = NDArray[np.float64]
 ARM = {"inner_arm": 100.0, "outer_arm": 200.0}
 UPRIGHT = {"inner_radius": 60.0, "arm_length": 400.0, "rail_angle": 0.0, "max_angle_ball_joint": 45.0}
 TYPE_12 = {"link_length_1": 300.0, "link_length_2": 350.0, "link_length_3": 100.0, "link_length_4": 300.0, "link_length_5": 100.0}
+
+
+def delta(radius: float) -> dict[str, float]:
+    found = {f"azimuth_{i}": a for i, a in enumerate((0.0, 120.0, 240.0), 1)}
+    for i in (1, 2, 3):
+        found |= {f"base_radius_{i}": radius, f"inner_arm_{i}": 100.0, f"outer_arm_{i}": 200.0, f"tcp_radius_{i}": 40.0}
+    return found
+
+
+def rails(radius: float) -> dict[str, float]:
+    found = {"arm_length": 250.0}
+    for i, azimuth in enumerate(np.radians((90.0, 210.0, 330.0)), 1):
+        found |= {f"rail_x_{i}": radius * np.cos(azimuth), f"rail_y_{i}": radius * np.sin(azimuth)}
+    return found
 
 
 EDGES = {
@@ -17,6 +38,8 @@ EDGES = {
     "BipodRotary": (lambda s: {**ARM, "displacement": 340.0 + s, "tcp_displacement": 40.0}, "reach the plate"),
     "P2XType1": (lambda s: {"arm_length_1": 200.0, "arm_length_2": 100.0, "rail_y_2": 300.0 + s}, "meet between the rails"),
     "KinType12XY": (lambda s: {**TYPE_12, "link_length_5": 700.0 + s}, "link 5"),
+    "DeltaP3CType3": (lambda s: delta(340.0 + s), "reach the plate"),
+    "TripodP3Z": (lambda s: rails(250.0 + s), "reach the plate"),
     "TripodLinear": (
         lambda s: {**UPRIGHT, "outer_radius": 460.0 + s},
         "reach the plate",
@@ -36,3 +59,30 @@ def test_the_edge_of_what_can_be_assembled(name: str) -> None:
 
 def test_steep_rails_can_be_as_far_apart_as_they_like() -> None:
     softkin.TripodLinear(outer_radius=4000.0, inner_radius=60.0, arm_length=400.0, rail_angle=30.0, max_angle_ball_joint=45.0)
+
+
+def do_meet(centres: Array, radii: Array) -> bool:
+    """Every condition, with numbers for its steps."""
+    values: dict[sp.Symbol, sp.Expr] = {}
+    for constraint in discs_meet([vector(*map(sp.Float, c)) for c in centres], list(map(sp.Float, radii)), "they meet"):
+        for step in constraint.steps:
+            values[step.name] = step.value.subs(values)
+        if not constraint.condition.subs(values):
+            return False
+    return True
+
+
+def test_discs_that_meet() -> None:
+    """Against the smallest largest excess over a fine grid of points, on random discs of all sizes."""
+    rng = np.random.default_rng(8)
+    grid = np.stack(np.meshgrid(np.linspace(-3, 3, 301), np.linspace(-3, 3, 301)), axis=-1).reshape(-1, 2)
+    seen = set()
+    for _ in range(300):
+        centres, radii = rng.uniform(-1, 1, (3, 2)), rng.uniform(0.05, 1.5, 3)
+        excess = np.max(np.linalg.norm(grid[:, None] - centres, axis=2) - radii, axis=1).min()
+        if abs(excess) < 0.02:
+            continue  # too close for the grid
+        found = do_meet(centres, radii)
+        assert found == (excess < 0), (centres, radii)
+        seen.add(found)
+    assert seen == {True, False}

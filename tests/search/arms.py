@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import reduce
+
 import numpy as np
 import softkin
 from numpy.typing import NDArray
@@ -18,21 +20,23 @@ def arm(lateral: float = 0.0) -> softkin.Ac6RZRYRYRXRYRZJ6Offset:
 
 
 def frame(axes: Array, lateral: float) -> Array:
-    """The homogeneous matrix at axis values in degrees, multiplied out."""
-    q, k = np.radians(axes), IRB_2400
+    """The homogeneous matrix (4, 4) at axis values (6) in degrees, multiplied out; of many rows at once."""
+    q, k = np.moveaxis(np.radians(axes), -1, 0), IRB_2400
     steps = (
         turn(2, q[0]), shift(k["a1"], 0, k["d1"]), turn(1, q[1]), shift(0, 0, k["a2"]), turn(1, q[2]),
         shift(k["d4"], 0, k["a3"]), turn(0, q[3]), turn(1, q[4]), shift(lateral, 0, 0), turn(2, q[5]), shift(0, 0, k["d6"]),
-    )
-    return np.linalg.multi_dot(steps)
+    )  # fmt: skip
+    return np.asarray(reduce(np.matmul, steps))
 
 
-def turn(axis: int, angle: float) -> Array:
-    """A turn about a coordinate axis."""
-    matrix, (i, j) = np.eye(4), ((axis + 1) % 3, (axis + 2) % 3)
-    matrix[i, i] = matrix[j, j] = np.cos(angle)
-    matrix[j, i] = np.sin(angle)
-    matrix[i, j] = -matrix[j, i]
+def turn(axis: int, angle: Array) -> Array:
+    """Turns about a coordinate axis."""
+    angle = np.asarray(angle)
+    matrix, (i, j) = np.zeros((*angle.shape, 4, 4)), ((axis + 1) % 3, (axis + 2) % 3)
+    matrix[..., range(4), range(4)] = 1.0
+    matrix[..., i, i] = matrix[..., j, j] = np.cos(angle)
+    matrix[..., j, i] = np.sin(angle)
+    matrix[..., i, j] = -matrix[..., j, i]
     return matrix
 
 
@@ -56,34 +60,25 @@ def miss(axes: Array, lateral: float, wanted: Array) -> float:
 
 
 def all_roots(wanted: Array, lateral: float, rng: np.random.Generator) -> list[Array]:
-    """Every solution that Newton's method finds from many starts, in degrees within one turn."""
+    """Every solution that Newton's method finds from many starts, in degrees."""
+    axes = rng.uniform(-180, 180, (150, 6))
+    for _ in range(40):
+        here = frame(axes, lateral)
+        columns = [_apart(here, frame(axes + step, lateral)) / 1e-6 for step in 1e-6 * np.eye(6)]
+        step = (np.linalg.pinv(np.stack(columns, axis=-1), rcond=1e-9) @ _apart(here, wanted)[:, :, None])[:, :, 0]
+        axes = axes + step * np.minimum(1.0, 30.0 / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-9))
+    reached = np.abs(_apart(frame(axes, lateral), wanted)).max(axis=1) < 1e-12
     found: list[Array] = []
-    for start in rng.uniform(-180, 180, (150, 6)):
-        axes = _newton(start, lateral, wanted)
-        if axes is None:
-            continue
-        if not any(np.abs(np.exp(1j * np.radians(axes)) - np.exp(1j * np.radians(o))).max() < 1e-6 for o in found):
-            found.append(axes)
+    for root in axes[reached]:
+        if not any(np.abs(np.exp(1j * np.radians(root)) - np.exp(1j * np.radians(o))).max() < 1e-6 for o in found):
+            found.append(root)
     return found
 
 
-def _newton(axes: Array, lateral: float, wanted: Array) -> Array | None:
-    for _ in range(40):
-        here = frame(axes, lateral)
-        twist = _apart(here, wanted)
-        if np.abs(twist).max() < 1e-12:
-            return axes
-        columns = [_apart(here, frame(axes + step, lateral)) / 1e-6 for step in 1e-6 * np.eye(6)]
-        matrix = np.stack(columns, axis=1)
-        step = np.linalg.lstsq(matrix, twist, rcond=1e-9)[0]
-        axes = axes + step * min(1.0, 30.0 / max(np.abs(step).max(), 1e-9))
-    return None
-
-
 def _apart(here: Array, there: Array) -> Array:
-    """The small motion from one frame to the other: metres and radians."""
-    turned = there[:3, :3] @ here[:3, :3].T
-    spin = np.array([turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]]) / 2
-    if np.trace(turned) < 1.0:
-        spin = spin / max(np.linalg.norm(spin), 1e-9)  # beyond a right angle the sine falls again
-    return np.concatenate([(there[:3, 3] - here[:3, 3]) / 1000.0, spin])
+    """The small motions from one frame to the other: metres and radians."""
+    turned = there[..., :3, :3] @ np.swapaxes(here[..., :3, :3], -1, -2)
+    spin = np.stack([turned[..., i, j] - turned[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))], axis=-1) / 2
+    length = np.maximum(np.linalg.norm(spin, axis=-1, keepdims=True), 1e-9)
+    is_far = np.trace(turned, axis1=-2, axis2=-1)[..., None] < 1.0  # beyond a right angle the sine falls again
+    return np.concatenate([(there[..., :3, 3] - here[..., :3, 3]) / 1000.0, np.where(is_far, spin / length, spin)], axis=-1)

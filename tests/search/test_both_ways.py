@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 import pytest
+import softkin
 from softkin import KinematicsError, Status
 
-from tests.search.arms import LATERALS, all_roots, arm, frame, miss, posed
+from tests.search.arms import IRB_2400, LATERALS, Array, all_roots, arm, frame, miss, posed
 
 
 @pytest.mark.parametrize("lateral", (0.0, *LATERALS))
@@ -37,21 +38,59 @@ def test_right_angles_with_the_reference_at_the_same_axes(lateral: float) -> Non
     assert max(miss(a, lateral, frame(b, lateral)) for a, b in zip(found, axes, strict=True)) < 1e-10
 
 
-def test_how_many_solutions_are_found() -> None:
+@pytest.mark.parametrize("lateral", LATERALS)
+def test_every_solution_is_found(lateral: float) -> None:
     """The witness asks the same of more poses and machines, before anything is generated."""
-    lateral = 60.0
     robot, rng = arm(lateral), np.random.default_rng(3)
     total = missed = 0
-    for axes in rng.uniform(-180, 180, (4, 6)):
+    for axes in rng.uniform(-180, 180, (12, 6)):
         wanted = frame(axes, lateral)
-        slots = [np.array(s.axes) for s in robot.inverse_all(posed(wanted), axes) if s.axes is not None]
-        assert all(miss(a, lateral, wanted) < 1e-12 for a in slots)
+        solutions = ranked(robot, wanted, axes)
+        assert all(miss(a, lateral, wanted) < 1e-12 for a in solutions)
+        assert all(apart(a, b) > 1e-5 for a, b in combinations(solutions, 2))
         for root in all_roots(wanted, lateral, rng):
             total += 1
-            apart = [np.abs(np.exp(1j * np.radians(root)) - np.exp(1j * np.radians(a))).max() for a in slots]
-            missed += min(apart, default=9.0) > 1e-5
-    assert total > 16
+            missed += min((apart(root, a) for a in solutions), default=9.0) > 1e-5
+    assert total > 64
     assert missed == 0
+
+
+def ranked(robot: softkin.Mechanism, wanted: Array, reference: Array) -> list[Array]:
+    """Every solution, whatever its rank."""
+    slots = (s for s in robot.inverse_all(posed(wanted), reference) if s.axes is not None)
+    return [np.array(axes) for s in slots for axes in (s.axes, *s.others)]
+
+
+def apart(one: Array, other: Array) -> float:
+    """How far two solutions are apart, whole turns not counted."""
+    return float(np.abs(np.exp(1j * np.radians(one)) - np.exp(1j * np.radians(other))).max())
+
+
+def test_the_solutions_of_a_slot_are_ranked_by_how_far_they_are() -> None:
+    """Between a pose with two solutions on one branch: each is the first where the reference lies at it."""
+    robot, here = arm(-35.0), np.array([-39.919, 90.278, 77.852, -212.045, 95.808, -183.919])
+    wanted, configuration = frame(here, -35.0), robot.forward(here)[1][:4]
+    (slot,) = (s for s in robot.inverse_all(posed(wanted), here) if s.configuration[:4] == configuration)
+    assert slot.axes is not None
+    assert np.abs(slot.axes - here).max() < 1e-9
+    (there,) = slot.others
+    assert robot.forward(there)[1][:4] == configuration
+    assert apart(np.array(there), here) > 0.1
+    (slot,) = (s for s in robot.inverse_all(posed(wanted), there) if s.configuration[:4] == configuration)
+    assert slot.axes is not None
+    assert np.abs(np.subtract(slot.axes, there)).max() < 1e-9
+    assert [apart(np.array(a), here) < 1e-9 for a in slot.others] == [True]
+
+
+def test_a_solution_beyond_the_limits_gives_way_to_another_of_its_slot() -> None:
+    here = np.array([-39.919, 90.278, 77.852, -212.045, 95.808, -183.919])
+    robot = softkin.Ac6RZRYRYRXRYRZJ6Offset(**IRB_2400, j6_offset_x=-35.0, lower_a6=-120.0, upper_a6=120.0)
+    wanted, configuration = frame(here, -35.0), robot.forward(here)[1][:4]
+    (slot,) = (s for s in robot.inverse_all(posed(wanted), here) if s.configuration[:4] == configuration)
+    assert slot.others == ()
+    assert slot.axes is not None
+    assert abs(slot.axes[5]) <= 120.0
+    assert miss(np.array(slot.axes), -35.0, wanted) < 1e-12
 
 
 def test_every_slot_says_its_own_configuration() -> None:

@@ -79,6 +79,8 @@ class Solution(NamedTuple):
     """The branch bytes of the slot, and the period numbers of its axes (0 where there are none)."""
     axes: Reals | None
     status: Status
+    others: tuple[Reals, ...] = ()
+    """Further solutions on the same branch, where the inverse is a search: the nearer to the reference the earlier."""
 
 
 class Singularity(NamedTuple):

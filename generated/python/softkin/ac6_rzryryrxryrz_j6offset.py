@@ -50,8 +50,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, Mechanism, Pose
+from softkin._core import Image, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, solve, sqrt
+from softkin._search import SearchedInverse
 from softkin._types import Axis, ConfigurationByte, Matrix, Parameter, Reals, Rotation, Status, Vector
 
 if TYPE_CHECKING:
@@ -123,7 +124,7 @@ class Constants(NamedTuple):
     swing_scale_q3_closed: float
 
 
-class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
+class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
     """Articulated arm with six axes, with a spherical wrist or with axis A6 beside the wrist centre.
 
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
@@ -670,15 +671,17 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
             (r31_at_q6, r32_at_q6, r33_at_q5),
         )
 
-    def _branch(
+    def _ranked(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+        number: Reals,
     ) -> Reals | Status:
-        """The axes of one branch, periods included, limits not."""
+        """The axes of one branch: of its solutions the one that has so many others nearer to the reference."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
+        (rank,) = number
         k = self._constants
         a1 = k.a1
         a2 = k.a2
@@ -759,12 +762,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
         # without the offset there is no second crossing
         if not ((searched > 0.5) or (sigma_crossing > 0.0)):
             return Status.UNREACHABLE
+        # without the offset a branch has one solution
+        if not ((searched > 0.5) or (rank < 0.5)):
+            return Status.UNREACHABLE
         free_a2 = (ref_a2 - offset_a2)*DEGREE
         free_a5 = (ref_a5 - offset_a5)*DEGREE
         free_a6 = (ref_a6 - offset_a6)*DEGREE
         # search along the joint, from its reference outwards
-        tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, usable_ahead, usable_behind, touching = (
-            free_a6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+        tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, touching, passed_ = (
+            free_a6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
         )
         for _ in range(1800):
             cos_q6_tried = cos(tried)
@@ -831,22 +837,22 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
             residual_tried = (reach_tried*reach_tried - a2*a2)/(machine_scale*machine_scale)
             scanning = 0.0 if closing > 0.5 else 1.0  # or a root is being closed in
             settled_ = 1.0 if (scanning <= 0.5) and ((closing >= 100.0) or (abs(residual_tried) <= 1e-14)) else 0.0
-            accepted = (
+            root_ = (
                 1.0
                 if (abs(residual_tried) <= 1e-12) and (
                     indicator_elbow_tried*sigma_elbow >= -1e-9
                 ) and ((settled_ > 0.5) or (touching > 0.5))
                 else 0.0
             )
+            accepted = 1.0 if (root_ > 0.5) and (passed_ > rank - 0.5) else 0.0
             first = 0.0 if radius > 0.0 else 1.0
-            usable_before = usable_ahead if side > 0.0 else usable_behind
             previous = ahead if side > 0.0 else behind
             outward = previous*side*sigma_crossing
             arrived = residual_tried*side*sigma_crossing
             # a root lies in between
             crosses = (
                 1.0
-                if (scanning > 0.5) and (usable_before > 0.5) and (first < 0.5) and (touching < 0.5) and (
+                if (scanning > 0.5) and (first < 0.5) and (touching < 0.5) and (
                     ((arrived >= 0.0) and (outward < 0.0) and (side < 0.0))
                     or ((outward <= 0.0) and (arrived > 0.0) and (side > 0.0))
                 )
@@ -907,16 +913,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
                 if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0))
                 else behind
             )
-            next_usable_ahead = (
-                1.0
-                if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side > 0.0))
-                else usable_ahead
-            )
-            next_usable_behind = (
-                1.0
-                if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0))
-                else usable_behind
-            )
+            next_passed = passed_ + root_
             if (accepted > 0.5) or (searched < 0.5) or (radius > 180.75*DEGREE):
                 break
             tried = next_tried
@@ -931,9 +928,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(Mechanism):
             high_value = next_high_value
             ahead = next_ahead
             behind = next_behind
-            usable_ahead = next_usable_ahead
-            usable_behind = next_usable_behind
             touching = next_touching
+            passed_ = next_passed
         else:
             return Status.UNREACHABLE
         # no root in this branch

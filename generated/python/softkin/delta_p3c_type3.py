@@ -381,6 +381,43 @@ class DeltaP3CType3(OffsetKinematics):
                 "the arms must not all point the same way", azimuth_1=azimuth_1, azimuth_2=azimuth_2,
                 azimuth_3=azimuth_3,
             )
+        # what every arm reaches, seen from above: a disc
+        reach_x_1 = (base_radius_1 - tcp_radius_1)*cos(DEGREE*azimuth_1)
+        reach_y_1 = (base_radius_1 - tcp_radius_1)*sin(DEGREE*azimuth_1)
+        reach_1 = inner_arm_1 + outer_arm_1
+        reach_x_2 = (base_radius_2 - tcp_radius_2)*cos(DEGREE*azimuth_2)
+        reach_y_2 = (base_radius_2 - tcp_radius_2)*sin(DEGREE*azimuth_2)
+        reach_2 = inner_arm_2 + outer_arm_2
+        reach_x_3 = (base_radius_3 - tcp_radius_3)*cos(DEGREE*azimuth_3)
+        reach_y_3 = (base_radius_3 - tcp_radius_3)*sin(DEGREE*azimuth_3)
+        reach_3 = inner_arm_3 + outer_arm_3
+        side_12_x = reach_x_2 - reach_x_1
+        side_12_y = reach_y_2 - reach_y_1
+        side_13_x = reach_x_3 - reach_x_1
+        side_13_y = reach_y_3 - reach_y_1
+        side_23_x = reach_x_3 - reach_x_2
+        side_23_y = reach_y_3 - reach_y_2
+        if not (
+            side_12_x*side_12_x + side_12_y*side_12_y <= (reach_1 + reach_2)*(reach_1 + reach_2)
+            and side_13_x*side_13_x + side_13_y*side_13_y <= (reach_1 + reach_3)*(reach_1 + reach_3)
+            and side_23_x*side_23_x + side_23_y*side_23_y <= (reach_2 + reach_3)*(reach_2 + reach_3)
+        ):
+            raise self._refusal("arms long enough to reach the plate")
+        corner_area = side_12_x*side_13_y - side_12_y*side_13_x
+        power_2 = reach_1*reach_1 + side_12_x*side_12_x + side_12_y*side_12_y - reach_2*reach_2
+        power_3 = reach_1*reach_1 + side_13_x*side_13_x + side_13_y*side_13_y - reach_3*reach_3
+        equal_power_x = power_2*side_13_y - power_3*side_12_y
+        equal_power_y = power_3*side_12_x - power_2*side_13_x
+        weight_2 = equal_power_x*side_13_y - equal_power_y*side_13_x
+        weight_3 = equal_power_y*side_12_x - equal_power_x*side_12_y
+        if not (
+            (weight_2 < 0.0) or (weight_3 < 0.0) or (weight_2 + weight_3 > 2.0*corner_area*corner_area)
+            or (
+                equal_power_x*equal_power_x
+                + equal_power_y*equal_power_y <= 4.0*corner_area*corner_area*reach_1*reach_1
+            )
+        ):
+            raise self._refusal("arms long enough to reach the plate")
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
         unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit

@@ -321,6 +321,43 @@ class TripodP3Z(OffsetKinematics):
                 "the rails must not lie on a line", arm_length=arm_length, rail_x_1=rail_x_1, rail_y_1=rail_y_1,
                 rail_x_2=rail_x_2, rail_y_2=rail_y_2, rail_x_3=rail_x_3, rail_y_3=rail_y_3,
             )
+        # what every arm reaches, seen from above: a disc
+        reach_x_1 = (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_x_1
+        reach_y_1 = (1.0 - tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1))*rail_y_1
+        reach_1 = arm_length
+        reach_x_2 = (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_x_2
+        reach_y_2 = (1.0 - tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2))*rail_y_2
+        reach_2 = arm_length
+        reach_x_3 = (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_x_3
+        reach_y_3 = (1.0 - tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3))*rail_y_3
+        reach_3 = arm_length
+        side_12_x = reach_x_2 - reach_x_1
+        side_12_y = reach_y_2 - reach_y_1
+        side_13_x = reach_x_3 - reach_x_1
+        side_13_y = reach_y_3 - reach_y_1
+        side_23_x = reach_x_3 - reach_x_2
+        side_23_y = reach_y_3 - reach_y_2
+        if not (
+            side_12_x*side_12_x + side_12_y*side_12_y <= (reach_1 + reach_2)*(reach_1 + reach_2)
+            and side_13_x*side_13_x + side_13_y*side_13_y <= (reach_1 + reach_3)*(reach_1 + reach_3)
+            and side_23_x*side_23_x + side_23_y*side_23_y <= (reach_2 + reach_3)*(reach_2 + reach_3)
+        ):
+            raise self._refusal("rods long enough to reach the plate")
+        corner_area = side_12_x*side_13_y - side_12_y*side_13_x
+        power_2 = reach_1*reach_1 + side_12_x*side_12_x + side_12_y*side_12_y - reach_2*reach_2
+        power_3 = reach_1*reach_1 + side_13_x*side_13_x + side_13_y*side_13_y - reach_3*reach_3
+        equal_power_x = power_2*side_13_y - power_3*side_12_y
+        equal_power_y = power_3*side_12_x - power_2*side_13_x
+        weight_2 = equal_power_x*side_13_y - equal_power_y*side_13_x
+        weight_3 = equal_power_y*side_12_x - equal_power_x*side_12_y
+        if not (
+            (weight_2 < 0.0) or (weight_3 < 0.0) or (weight_2 + weight_3 > 2.0*corner_area*corner_area)
+            or (
+                equal_power_x*equal_power_x
+                + equal_power_y*equal_power_y <= 4.0*corner_area*corner_area*reach_1*reach_1
+            )
+        ):
+            raise self._refusal("rods long enough to reach the plate")
         if not ((lower_a1 < upper_a1) or (abs(lower_a1) + abs(upper_a1) <= 0.0)):
             raise self._refusal("lower_a1 below upper_a1, or both 0", lower_a1=lower_a1, upper_a1=upper_a1)
         unlimited_a1 = 1.0 if abs(lower_a1) + abs(upper_a1) <= 0.0 else 0.0  # a1: no limit

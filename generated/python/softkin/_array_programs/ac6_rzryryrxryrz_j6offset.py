@@ -338,8 +338,8 @@ class ArrayPrograms(Programs):
         free_a5 = (ref_a5 - offset_a5)*DEGREE
         free_a6 = (ref_a6 - offset_a6)*DEGREE
         # search along the joint, from its reference outwards
-        tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, usable_ahead, usable_behind, touching = initial(
-            free_a6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+        tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, touching = initial(
+            free_a6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
         )
         for _ in range(1800):
             cos_q6_tried = cos(tried)
@@ -416,14 +416,13 @@ class ArrayPrograms(Programs):
                 0.0,
             )
             first = select(radius > 0.0, 0.0, 1.0)
-            usable_before = select(side > 0.0, usable_ahead, usable_behind)
             previous = select(side > 0.0, ahead, behind)
             outward = previous*side*sigma_crossing
             arrived = residual_tried*side*sigma_crossing
             # a root lies in between
             crosses = select(
                 (
-                    (scanning > 0.5) & (usable_before > 0.5) & (first < 0.5) & (touching < 0.5)
+                    (scanning > 0.5) & (first < 0.5) & (touching < 0.5)
                     & (
                         ((arrived >= 0.0) & (outward < 0.0) & (side < 0.0))
                         | ((outward <= 0.0) & (arrived > 0.0) & (side > 0.0))
@@ -491,22 +490,12 @@ class ArrayPrograms(Programs):
                 residual_tried,
                 behind,
             )
-            next_usable_ahead = select(
-                (scanning > 0.5) & (touching < 0.5) & ((first > 0.5) | (side > 0.0)),
-                1.0,
-                usable_ahead,
-            )
-            next_usable_behind = select(
-                (scanning > 0.5) & (touching < 0.5) & ((first > 0.5) | (side < 0.0)),
-                1.0,
-                usable_behind,
-            )
             done = (accepted > 0.5) | (searched < 0.5) | (radius > 180.75*DEGREE)
             if settled(done, status):
                 break
-            tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, usable_ahead, usable_behind, touching = advanced(
+            tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, touching = advanced(
                 done,
-                (tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, usable_ahead, usable_behind, touching),
+                (tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, touching),
                 (
                     next_tried,
                     next_radius,
@@ -520,8 +509,6 @@ class ArrayPrograms(Programs):
                     next_high_value,
                     next_ahead,
                     next_behind,
-                    next_usable_ahead,
-                    next_usable_behind,
                     next_touching,
                 ),
             )
