@@ -35,7 +35,6 @@ _SETTINGS: Any = {
     "font.family": "DejaVu Sans",
     "path.simplify": False,
     "text.hinting": "none",
-    "text.hinting_factor": 1,
 }
 
 
