@@ -9,11 +9,14 @@ import pytest
 
 from derive.drawing.labels import axis_name
 from derive.drawing.scene import Body, Scene
-from derive.emit.picture.rails import rails
+from derive.emit.picture.ink import Line
+from derive.emit.picture.rails import rails, slide_arrow
+from derive.emit.picture.view import Box, fitted
 from derive.mechanism import Mechanism
-from tests.drawings.machines import CHAINS, KINDS, RODS, Drawn, drawn
+from tests.drawings.machines import CATALOGUE, CHAINS, KINDS, RODS, Drawn, drawn
 
 STEP = 1e-4
+SLIDES = tuple(n for n, m in CATALOGUE.items() if m.chain is not None and any(not j.is_angle for j in m.joints))
 
 
 @pytest.fixture(params=KINDS)
@@ -161,3 +164,17 @@ def test_rails_that_begin_in_one_point_are_stacked() -> None:
     assert start == pytest.approx(end)
     alone = replace(scene, slides=scene.slides[:1])
     assert next(iter(rails(alone).values()))[1] == pytest.approx(end)
+
+
+@pytest.mark.parametrize("name", SLIDES)
+def test_the_arrow_of_a_slide_runs_along_it(name: str) -> None:
+    drawing = drawn(name).drawing
+    assert drawing.scene.slides
+    ends = rails(drawing.scene)
+    view = fitted([p for pair in ends.values() for p in pair], Box(0.0, 0.0, 800.0, 500.0), is_planar=drawing.is_planar)
+    for slide in drawing.scene.slides:
+        along = view.direction(slide.axis)
+        for mark in slide_arrow(slide, ends[slide], view, is_beside=False):
+            if isinstance(mark, Line):
+                drawn_along = np.subtract(mark.points[-1], mark.points[0])
+                assert drawn_along @ along == pytest.approx(np.linalg.norm(drawn_along) * np.linalg.norm(along), rel=1e-3)

@@ -53,12 +53,18 @@ def slide_arrow(slide: Slide, ends: Ends, view: View, *, is_beside: bool) -> Ite
     unit = along / max(float(np.linalg.norm(along)), 1e-9)
     aside = _ASIDE * np.array([-unit[1], unit[0]])
     if slide.has_rail:
-        start, end = view.page(slide.at), view.page(ends[1])
-        start = start if float((end - start) @ unit) < float(np.linalg.norm(end - view.page(ends[0]))) else view.page(ends[0])
+        start, end = view.page(_on_rail(slide.at, ends)), view.page(ends[1])
         yield from arrow([start + 0.2 * (end - start) + aside, start + 0.9 * (end - start) + aside], style.SLIDE, 2.4)
         return
     first = view.page(slide.at) + (aside if is_beside else 0.0)
     yield from arrow([first, first + _ALONE * along / max(float(np.linalg.norm(along)), 0.5)], style.SLIDE, 2.4)
+
+
+def _on_rail(place: Point, ends: Ends) -> Point:
+    """The place of a rail that is nearest: its zero, or the beginning of a rail that stands on another."""
+    begin, end = map(np.array, ends)
+    along = end - begin
+    return _point(begin + np.clip((np.array(place) - begin) @ along / (along @ along), 0.0, 1.0) * along)
 
 
 def _point(values: Vector) -> Point:
