@@ -61,7 +61,7 @@ def _check(options: argparse.Namespace) -> int:
     return 0
 
 
-def _files(options: argparse.Namespace) -> dict[str, str]:
+def _files(options: argparse.Namespace) -> dict[str, bytes]:
     outputs = languages(options.profile)
     built = []
     for one in derive_all(_chosen(catalogue(options.mechanisms), options.only)):

@@ -239,6 +239,8 @@ class Mechanism:
     closure: tuple[sp.Expr, ...] = ()
     rods: tuple[Rod, ...] = ()
     """Closure equations that say that a rod is rigid."""
+    bars: tuple[Rod, ...] = ()
+    """What is drawn, where the rods leave bodies out or stand for others: a bar between two points, as long as stated."""
     assembly: Assembly | None = None
     home: tuple[sp.Expr, ...] = ()
     """Where an iterative forward kinematics starts: x, y, z, then roll, pitch and yaw in radians (Rz Ry Rx)."""

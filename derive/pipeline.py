@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from derive.build import build
@@ -14,6 +14,7 @@ from derive.catalogue import Entry
 from derive.emit import python
 from derive.emit.language import Language
 from derive.emit.st import StructuredTextFiles
+from derive.emit.st_pictures import pictures_of
 from derive.kinematics import Evidence, Kinematics
 from derive.mechanism import DescriptionError, Mechanism
 from derive.selftest import self_test
@@ -37,6 +38,8 @@ class Built:
     kinematics: Kinematics
     evidence: Evidence
     seconds: float
+    pictures: Mapping[str, bytes] = field(default_factory=dict)
+    """Path below the output folder → bytes. They are made where the mechanism is derived: drawing takes as long."""
 
     @property
     def statements(self) -> int:
@@ -56,12 +59,13 @@ def derive_all(entries: Sequence[Entry]) -> Iterator[Built]:
 
 
 def derive_one(mechanism: Mechanism) -> Built:
-    """Derive one mechanism and measure it."""
+    """Derive one mechanism, measure it and draw it."""
     start = time.perf_counter()
     kinematics = build(mechanism)
     evidence = witness(kinematics)
     whole = replace(kinematics, evidence=evidence, self_test=self_test(kinematics))
-    return Built(whole, evidence, time.perf_counter() - start)
+    pictures = {str(Path(StructuredTextFiles.name) / name): data for name, data in pictures_of(kinematics).items()}
+    return Built(whole, evidence, time.perf_counter() - start, pictures)
 
 
 def languages(profile: str | None = None) -> tuple[Language, ...]:
@@ -75,14 +79,15 @@ def languages(profile: str | None = None) -> tuple[Language, ...]:
         raise GenerationError(str(problem)) from None
 
 
-def render_all(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, str]:
-    """All generated files: path below the output folder → text."""
+def render_all(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, bytes]:
+    """All generated files: path below the output folder → bytes."""
     kinematics = tuple(b.kinematics for b in built)
-    return {
-        str(Path(language.name) / name): text
+    texts = {
+        str(Path(language.name) / name): text.encode()
         for language in outputs
         for name, text in sorted(language.render(kinematics).items())
     }
+    return texts | {name: data for one in built for name, data in one.pictures.items()}
 
 
 def _attempt(entry: Entry) -> Built | str:

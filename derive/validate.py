@@ -144,6 +144,7 @@ def _symbols(mechanism: Mechanism) -> Iterator[str]:
         *((f"branch {b.name!r}", b.indicator) for b in mechanism.branches),
         *(("positive", sp.sympify(e)) for e in mechanism.positive),
         *((f"limited quantity {q.name!r}", q.value) for q in mechanism.limited),
+        *((f"bar {bar.name!r}", e) for bar in mechanism.bars for e in (*bar.base, *bar.plate, bar.length)),
     ]
     for place, expression in named:
         yield from _unknown(place, expression, known, "a joint or a parameter of this mechanism")

@@ -198,7 +198,7 @@ def test_by_products_are_no_orphans(tmp_path: Path) -> None:
     for name in ("a.py", "softkin.egg-info/PKG-INFO", "__pycache__/a.pyc", "build/lib/a.py"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("")
-    assert list(differences(tmp_path, {"a.py": ""})) == []
+    assert list(differences(tmp_path, {"a.py": b""})) == []
 
 
 def test_the_project_generates_into_its_own_folder() -> None:

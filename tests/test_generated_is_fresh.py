@@ -21,7 +21,7 @@ def test_generated_is_fresh(tmp_path: Path) -> None:
     environment = {**os.environ, "PYTHONHASHSEED": "1"}
     done = subprocess.run(command, cwd=OUTPUT.parent, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    files = {str(p.relative_to(output)): p.read_bytes().decode() for p in output.rglob("*") if p.is_file()}
+    files = {str(p.relative_to(output)): p.read_bytes() for p in output.rglob("*") if p.is_file()}
     assert any(name.startswith("python") for name in files)
     assert any(name.startswith("st") for name in files)
     assert list(differences(OUTPUT, files)) == []

@@ -128,6 +128,6 @@ def _unit(kinematics: Kinematics, contract: Contract, templates: Environment) ->
     return templates.get_template("block.st.j2").render(
         contract.spelling,
         block=block,
-        description=description(kinematics, block, templates),
+        description=description(kinematics, block, contract.spelling["pictures"]["reference"], templates),
         methods=methods_of(kinematics, block, contract, templates),
     )

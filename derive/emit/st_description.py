@@ -32,13 +32,14 @@ _AUTOMATIC = (
 )
 
 
-def description(kinematics: Kinematics, block: Block, templates: Environment) -> str:
-    """The description of a block."""
+def description(kinematics: Kinematics, block: Block, picture: str, templates: Environment) -> str:
+    """The description of a block, with a reference to its picture."""
     names = {p.name: input_name(p) for p in kinematics.parameters}
     mechanism = kinematics.mechanism
     source = f"{_KINDS[mechanism.is_position, mechanism.is_orientation]}Source of the geometry: {mechanism.source}."
     text = templates.get_template("description.rst.j2").render(
         mechanism=mechanism,
+        picture=picture.format(name=block.name),
         source="\n".join(wrap(source, _WIDTH)),
         summary="\n".join(wrap(kinematics.mechanism.summary, _WIDTH)),
         rows=", ".join(kinematics.rows),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from derive.emit.st_pictures import FOLDER as PICTURES
 from derive.kinematics import Freedom, Kinematics
 from derive.mechanism import Turning
 
@@ -13,6 +14,7 @@ def overview(kinematics: Sequence[Kinematics]) -> Iterator[dict[str, str]]:
     for one in sorted(kinematics, key=lambda k: (k.mechanism.family, k.mechanism.block_name)):
         mechanism = one.mechanism
         yield {
+            "picture": f"{PICTURES}/{mechanism.block_name}",
             "path": f"{mechanism.family}/{mechanism.block_name}",
             "block": mechanism.block_name,
             "axes": " ".join(joint.name for joint in mechanism.joints) or "none",

@@ -10,8 +10,8 @@ L2 = length("outer_arm", "Length of the outer arms", nominal=500.0)
 BASE = optional_length("displacement", "Centre to the motor axes", nominal=120.0)
 LINK = optional_length("tcp_link_distance", "Distance of the two rod joints of the plate", nominal=80.0)
 
-A1 = rotary("A1", "Arm on the side of -X, counter-clockwise from +X")
-A2 = rotary("A2", "Arm on the side of +X, counter-clockwise from +X")
+A1 = rotary("A1", "Arm on the side of -X, counter-clockwise from +X", nominal=200.0)
+A2 = rotary("A2", "Arm on the side of +X, counter-clockwise from +X", nominal=-20.0)
 
 ARM_1 = vector(L1 * cos(A1), L1 * sin(A1))
 ARM_2 = vector(L1 * cos(A2), L1 * sin(A2))

@@ -20,6 +20,7 @@ MECHANISM = Mechanism(
     joints=(A1, A2),
     closure=(X - (A1 + A2) / 2,),
     rods=(rod("1", (HALF, 0), (0, Y), L),),
+    bars=(rod("1", (A1, 0), (X - W / 2, Y), L), rod("2", (A2, 0), (X + W / 2, Y), L)),
     task=Task("xy"),
     positive=(HALF,),
     assembly=assembly("tcp", Y, margin="flat", below=-1, above=+1),

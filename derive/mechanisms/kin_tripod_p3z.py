@@ -47,6 +47,10 @@ MECHANISM = Mechanism(
     parameters=(L, SHIFT, *(value for rail in RAILS for value in rail)),
     joints=AXES,
     rods=tuple(rod(str(k), carriage, TCP, L) for k, carriage in enumerate(CARRIAGES, 1)),
+    bars=tuple(
+        rod(str(k), (x, y, a), (X + SHIFT * x / d, Y + SHIFT * y / d, Z), L)
+        for k, ((x, y), d, a) in enumerate(zip(RAILS, DISTANCES, AXES, strict=True), 1)
+    ),
     task=Task("xyz"),
     branches=tuple(
         branch(f"carriage_{k}", a - Z, margin=f"level_{k}", above=+1, below=-1) for k, a in enumerate(AXES, 1)

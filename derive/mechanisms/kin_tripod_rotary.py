@@ -20,7 +20,7 @@ from derive.mechanism import (
     rod,
     rotary,
 )
-from derive.vectors import cross, dot, minus, triple, vector
+from derive.vectors import Vector, cross, dot, minus, triple, vector
 
 L1 = length("arm_length_1", "Length of the upper arms", nominal=200.0)
 L2 = length("arm_length_2", "Length of the rods", nominal=450.0)
@@ -40,6 +40,12 @@ KNEES = [
 JOINTS = [vector(X + PLATE * c, Y + PLATE * s, Z) for c, s in DIRECTIONS]
 RODS = [minus(joint, knee) for joint, knee in zip(JOINTS, KNEES, strict=True)]
 
+
+def beside(point: Vector, direction: Vector, side: int) -> Vector:
+    """Where one rod of a pair ends."""
+    return vector(point[0] - side * APART / 2 * direction[1], point[1] + side * APART / 2 * direction[0], point[2])
+
+
 MECHANISM = Mechanism(
     name="Kin_Tripod_Rotary",
     vendor=Vendor.CODESYS,
@@ -49,6 +55,11 @@ MECHANISM = Mechanism(
     parameters=(L1, L2, DRIVES, STEWART, APART, SWING),
     joints=AXES,
     rods=tuple(rod(str(k), knee, joint, L2) for k, (knee, joint) in enumerate(zip(KNEES, JOINTS, strict=True), 1)),
+    bars=tuple(
+        rod(f"{k}{side}", beside(knee, d, s), beside(joint, d, s), L2)
+        for k, (knee, joint, d) in enumerate(zip(KNEES, JOINTS, DIRECTIONS, strict=True), 1)
+        for side, s in (("a", 1), ("b", -1))
+    ),
     task=Task("xyz"),
     branches=tuple(
         branch(

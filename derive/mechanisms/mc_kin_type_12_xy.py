@@ -33,6 +33,7 @@ MECHANISM = Mechanism(
     parameters=(L1, L2, L3, L4, L5, SWAP),
     joints=(A1, A2),
     rods=(rod("upper", T, TCP, L2), rod("rear", W, E, L4)),
+    bars=(rod("forearm", T, TCP, L2), rod("rear", T, E, L3), rod("rod", W, E, L4)),
     task=Task("xy"),
     branches=(
         branch("t", cross(minus(ORIGIN, TCP), minus(T, TCP)), margin="stretched_1", left=+1, right=-1),

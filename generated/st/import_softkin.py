@@ -24,6 +24,8 @@ COMPANY = "Softkin"
 VERSION = "0.1.0.0"
 LIBRARIES = ["SM3_Transformation", "SM3_Math", "SM3_Error"]
 
+PICTURES = "pictures"
+
 # Not documented: what the accessors are called that create_property makes.
 GETTER, SETTER = "Get", "Set"
 
@@ -136,6 +138,15 @@ def import_all(project, source):
     return count
 
 
+def add_pictures(project, source):
+    """Embed the pictures that the descriptions refer to; their number. They are objects of the root of the project."""
+    directory = os.path.join(source, PICTURES)
+    files = sorted(f for f in os.listdir(directory) if f.endswith(".png")) if os.path.isdir(directory) else []
+    for file in files:
+        project.create_external_file_object(os.path.join(directory, file))
+    return len(files)
+
+
 def installed(title):
     """The newest installed library of that title."""
     found = [one for one in library_manager.get_all_libraries() if one.title == title]
@@ -239,9 +250,10 @@ def main():
     add_references(project)
     describe(project)
     count = import_all(project, source)
+    pictures = add_pictures(project, source)
     errors = check(project)
     project.save()
-    print("%d objects in %s; errors of the compiler: %d" % (count, path, errors))
+    print("%d objects and %d pictures in %s; errors of the compiler: %d" % (count, pictures, path, errors))
     return errors
 
 

@@ -165,6 +165,14 @@ class Project(Container):
         super().__init__()
         self._engine, self.path, self.is_saved = engine, path, False
         self.information = types.SimpleNamespace()
+        self.external_files: dict[str, bytes] = {}
+
+    def create_external_file_object(self, file_path: str, name: str | None = None) -> None:
+        """Embed a file, under its own name where none is given."""
+        called = name or Path(file_path).name
+        if called in self.external_files:
+            raise Refused(f"an external file {called} already exists")
+        self.external_files[called] = Path(file_path).read_bytes()
 
     def get_library_manager(self) -> LibraryManager:
         found = [one for one in self._children if isinstance(one, LibraryManager)]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import re
 import runpy
 import shutil
 import sys
@@ -54,7 +55,15 @@ def test_a_library_with_every_object(imported: tuple[Project, str]) -> None:
     }
     assert printed.count("\n") == 2, "one message of the compiler, and the summary"
     assert "Build: Severity.Information: C32 Compile complete (Softkin)" in printed
-    assert f"{len(all_parts(FILES))} objects in {project.path}; errors of the compiler: 0" in printed
+    made = f"{len(all_parts(FILES))} objects and {len(project.external_files)} pictures"
+    assert f"{made} in {project.path}; errors of the compiler: 0" in printed
+
+
+def test_descriptions_find_their_pictures(imported: tuple[Project, str]) -> None:
+    project, _ = imported
+    referred = [name for text in FILES.values() for name in re.findall(r"^\.\. image:: @\((.+)\)$", text, re.MULTILINE)]
+    assert sorted(referred) == sorted(project.external_files)
+    assert all(data == (SOURCE / "pictures" / name).read_bytes() for name, data in project.external_files.items())
 
 
 def _panes(nodes: list[Node]) -> dict[tuple[str, str], tuple[str, str]]:

@@ -1,0 +1,154 @@
+"""The scene of a chain: its factors walked base first, at given joint values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import sympy as sp
+
+from derive.drawing.labels import Values, axis_name, interface, plain
+from derive.drawing.scene import Body, Dimension, Frame, Point, Scene, Segment, Slide, Turn, point
+from derive.frames import Factor, Motion
+from derive.mechanism import DescriptionError, Joint, Mechanism
+from derive.run import Array, evaluate
+
+_PARALLEL, _EXACT = 0.999, 1e-6
+
+
+def chain_scene(mechanism: Mechanism, values: Values, tool: Frame) -> Scene:
+    """Walk the chain of a mechanism; `values` has its parameters and joint values by name.
+
+    Raises `DescriptionError` where it ends elsewhere than at the tool that forward kinematics computed.
+    """
+    assert mechanism.chain is not None
+    walker = _Walker(mechanism, values)
+    for factor in mechanism.chain.factors:
+        walker.pass_over(factor)
+    walker.finish_body(None)
+    apart = float(np.linalg.norm(walker.position - np.array(tool.position)))
+    if apart > _EXACT * (1.0 + float(np.linalg.norm(walker.position))):
+        raise DescriptionError(f"the chain ends {apart:g} away from where forward kinematics has the tool")
+    return Scene(
+        segments=tuple(walker.segments),
+        turns=tuple(walker.turns),
+        slides=(*walker.slides, *_drives(mechanism, values, walker)),
+        dimensions=tuple(walker.dimensions),
+        spots=(),
+        grounds=((0.0, 0.0, 0.0),),
+        tool=tool,
+        hidden=tuple(walker.hidden),
+    )
+
+
+@dataclass
+class _Walker:
+    mechanism: Mechanism
+    values: Values
+    position: Array = field(default_factory=lambda: np.zeros(3))
+    rotation: Array = field(default_factory=lambda: np.eye(3))
+    segments: list[Segment] = field(default_factory=list)
+    turns: list[Turn] = field(default_factory=list)
+    slides: list[Slide] = field(default_factory=list)
+    dimensions: list[Dimension] = field(default_factory=list)
+    hidden: list[sp.Expr] = field(default_factory=list)
+    moves: dict[Joint, list[Array]] = field(default_factory=dict)
+    """Of every joint, where the shifts it takes part in go per unit of it."""
+    _shifts: list[tuple[Array, sp.Expr]] = field(default_factory=list)
+    """Of the body that is being walked: its shifts, and what they are called."""
+    _start: Array = field(default_factory=lambda: np.zeros(3))
+    _last_axis: Array | None = None
+
+    def pass_over(self, factor: Factor) -> None:
+        """Go through one factor."""
+        moving = [j for j in self.mechanism.joints if j.symbol in factor.amount.free_symbols]
+        direction = self.rotation[:, factor.axis]
+        amount = float(evaluate(factor.amount, self.values))
+        if factor.motion is Motion.SHIFT:
+            self._shift(factor, direction, amount, moving)
+        else:
+            if moving:
+                self.finish_body(direction)
+                sense = int(np.sign(float(evaluate(sp.diff(factor.amount, moving[0].symbol), self.values))))
+                label = interface(self.mechanism, sense * _unsigned(self.mechanism, factor.amount))
+                self.turns.append(Turn(label, point(self.position), point(sense * direction)))
+                self._last_axis = direction
+            angle = np.pi * amount if factor.motion is Motion.FLIP else amount
+            self.rotation = self.rotation @ _turned(factor.axis, angle)
+
+    def _shift(self, factor: Factor, direction: Array, amount: float, moving: list[Joint]) -> None:
+        if not moving:
+            self._shifts.append((direction * amount, _unsigned(self.mechanism, factor.amount)))
+            self.position = self.position + direction * amount
+            return
+        self.finish_body(direction)
+        rates = {j: float(evaluate(sp.diff(factor.amount, j.symbol), self.values)) for j in moving}
+        linear = [j for j in moving if not j.is_angle]
+        for joint in linear:
+            self.moves.setdefault(joint, []).append(rates[joint] * direction)
+        alone = len(linear) == 1
+        sense = np.sign(rates[linear[0]]) if alone else 1.0
+        slide = Slide(self._label(factor), point(self.position), point(sense * direction), has_arrow=alone)
+        self.slides.append(slide)
+        if amount:
+            self.segments.append(Segment(point(self.position), point(self.position + direction * amount), Body.LINK))
+        self.position = self._start = self.position + direction * amount
+        self._last_axis = direction
+
+    def finish_body(self, axis: Array | None) -> None:
+        """Draw the body up to here: first along the joint it hangs on, last along the next one, as machines are built."""
+        at = self._start
+        self._point_turns()
+        for shift, label in sorted(self._shifts, key=lambda s: _place(s[0], self._last_axis, axis)):
+            if not np.any(shift):
+                self.hidden += [plain(label)] if label.free_symbols else []
+                continue
+            self.segments.append(Segment(point(at), point(at + shift), Body.LINK))
+            if label.free_symbols:
+                negative = float(evaluate(label, self.values)) < 0
+                self.dimensions.append(Dimension(plain(label), point(at), point(at + shift), negative))
+            at = at + shift
+        self._shifts, self._start = [], self.position
+
+    def _point_turns(self) -> None:
+        """Say of the last joints where the body that is done here goes."""
+        total = self.position - self._start
+        for index, turn in enumerate(self.turns):
+            across = total - (total @ np.array(turn.axis)) * np.array(turn.axis)
+            if turn.toward is None and np.linalg.norm(across) > 1e-9:
+                self.turns[index] = replace(turn, toward=point(across))
+
+    def _label(self, factor: Factor) -> sp.Expr:
+        return interface(self.mechanism, _unsigned(self.mechanism, factor.amount))
+
+
+def _drives(mechanism: Mechanism, values: Values, walker: _Walker) -> list[Slide]:
+    """Where a drive moves the tool that takes part in several shifts, or shares one."""
+    arrows = {s.label for s in walker.slides if s.has_arrow}
+    found = []
+    for joint, moves in walker.moves.items():
+        if not any(axis_name(joint) in label.free_symbols for label in arrows):
+            total = sum(moves[1:], moves[0])
+            unit: Point = point(total / np.linalg.norm(total))
+            found.append(Slide(axis_name(joint), point(walker.position), unit, has_rail=False))
+    return found
+
+
+def _unsigned(mechanism: Mechanism, amount: sp.Expr) -> sp.Expr:
+    """The amount without the parameters that are only a direction: arrows show it."""
+    signs = {p.symbol: sp.Integer(1) for p in mechanism.parameters if p.role.value == "sign"}
+    return sp.sympify(amount).xreplace(signs)
+
+
+def _place(shift: Array, last: Array | None, following: Array | None) -> int:
+    if last is not None and abs(shift @ last) > _PARALLEL * np.linalg.norm(shift):
+        return 0
+    return 2 if following is not None and abs(shift @ following) > _PARALLEL * np.linalg.norm(shift) else 1
+
+
+def _turned(axis: int, angle: float) -> Array:
+    rotation = np.eye(3)
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    rotation[first, first] = rotation[second, second] = np.cos(angle)
+    rotation[first, second], rotation[second, first] = -np.sin(angle), np.sin(angle)
+    return rotation

@@ -1,0 +1,135 @@
+"""The drawing of a mechanism: its scene, and what each byte of a configuration chooses, at one regular pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from derive.drawing.chain import chain_scene
+from derive.drawing.labels import plain
+from derive.drawing.loop import loop_scene
+from derive.drawing.pose import Pose, drawn_pose, nominal_machine, pose_at, values_at
+from derive.drawing.scene import Scene, Segment, Spot
+from derive.kinematics import Kinematics
+from derive.mechanism import Joint, Mechanism
+from derive.program import Status
+from derive.selftest_calls import Tested, branches
+from derive.selftest_cases import Reals
+
+_ANGLES = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0)
+"""Where rotary axes stand to show a configuration, one after the other."""
+_VISIBLE = 0.04
+"""Two poses look different where some point is this part of the machine's size away."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One choice: two poses with the same commanded tool, or with the same axes where it is the way of assembly."""
+
+    name: str
+    names: tuple[str, str]
+    scenes: tuple[Scene, Scene] | None
+    """None where both look alike, or no such pair was found."""
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A mechanism, drawn: the names of its axes with their values, and the choices of its configuration."""
+
+    scene: Scene
+    axes: tuple[tuple[Joint, float], ...]
+    is_zero: bool
+    is_home: bool
+    is_planar: bool
+    choices: tuple[Choice, ...]
+    assembly: Choice | None
+
+
+def drawing_of(kinematics: Kinematics) -> Drawing:
+    """Draw a mechanism. Raises `DescriptionError` where a bar has not the length that is stated, or nothing can be drawn."""
+    mechanism = kinematics.mechanism
+    machine = nominal_machine(kinematics)
+    pose = drawn_pose(machine)
+    scene = scene_at(machine, pose)
+    if mechanism.home:
+        home = Spot(tuple(map(plain, mechanism.home[:3])), pose.tool.position)
+        scene = replace(scene, spots=(*scene.spots, home))
+    return Drawing(
+        scene=scene,
+        axes=tuple(zip(mechanism.joints, pose.axes, strict=True)),
+        is_zero=pose.is_zero,
+        is_home=bool(mechanism.home),
+        is_planar=mechanism.task.position == "xy",
+        choices=tuple(_choices(_without_search(kinematics, machine), pose)),
+        assembly=_assembly(kinematics, pose),
+    )
+
+
+def _without_search(kinematics: Kinematics, machine: Tested) -> Tested:
+    """The machine with a closed form: what a search adds to the branches is not to be seen."""
+    search = kinematics.mechanism.search
+    return machine if search is None else nominal_machine(kinematics, **{search.where.name: 0.0})
+
+
+def scene_at(machine: Tested, pose: Pose) -> Scene:
+    """What is drawn of a machine at a pose."""
+    mechanism = machine.kinematics.mechanism
+    values = values_at(machine, pose)
+    return (loop_scene if mechanism.chain is None else chain_scene)(mechanism, values, pose.tool)
+
+
+def _choices(machine: Tested, drawn: Pose) -> Iterator[Choice]:
+    """Every branch of the configuration, its other byte at the same tool frame."""
+    mechanism = machine.kinematics.mechanism
+    told = [k for k, branch in enumerate(mechanism.branches) if not branch.is_crossing]
+    found: dict[int, tuple[Scene, Scene]] = {}
+    for axes in _candidates(mechanism, drawn):
+        missing = [k for k in told if k not in found]
+        if missing and (pose := pose_at(machine, axes)) is not None:
+            pairs = {k: _pair(machine, pose, k) for k in missing if pose.configuration[k] != 3}
+            found |= {k: pair for k, pair in pairs.items() if pair is not None}
+    for index, branch in enumerate(mechanism.branches):
+        yield Choice(branch.name, branch.names, found.get(index))
+
+
+def _candidates(mechanism: Mechanism, drawn: Pose) -> Iterator[Reals]:
+    """Poses to look at: near the drawn one for a loop, and with every rotary axis turned."""
+    for part in (0.0, 0.4, -0.4, 0.8, 1.2):
+        turned = zip(mechanism.joints, drawn.axes, (*_ANGLES,) * 2, strict=False)
+        if part or not drawn.is_zero or mechanism.chain is None:
+            scale = part if mechanism.chain is None else 2.5 * part
+            yield tuple(axis + (scale * angle if joint.is_angle else 0.0) for joint, axis, angle in turned)
+
+
+def _pair(machine: Tested, pose: Pose, index: int) -> tuple[Scene, Scene] | None:
+    count = len(machine.kinematics.mechanism.branches)
+    first = pose.configuration[index] == 1
+    other = [3 - byte if k == index else byte for k, byte in enumerate(pose.configuration[:count])]
+    periods = (0,) * (len(pose.configuration) - count)
+    _, solutions, statuses = branches(machine, pose.frame, (*other, *periods), pose.axes)
+    flipped = pose_at(machine, solutions[0]) if statuses[0] is Status.OK else None
+    if flipped is None:
+        return None
+    return _different(*(scene_at(machine, p) for p in ((pose, flipped) if first else (flipped, pose))))
+
+
+def _assembly(kinematics: Kinematics, drawn: Pose) -> Choice | None:
+    """The two ways of assembly, at the same axis values."""
+    assembly = kinematics.mechanism.assembly
+    if assembly is None:
+        return None
+    machine = nominal_machine(kinematics, **{assembly.parameter: 1.0})
+    other = pose_at(machine, drawn.axes)
+    scenes = None if other is None else (scene_at(nominal_machine(kinematics), drawn), scene_at(machine, other))
+    return Choice(assembly.name, assembly.names, scenes and _different(*scenes))
+
+
+def _different(one: Scene, other: Scene) -> tuple[Scene, Scene] | None:
+    return (one, other) if _apart(one.segments, other.segments) > _VISIBLE * max(one.size, other.size) else None
+
+
+def _apart(one: tuple[Segment, ...], other: tuple[Segment, ...]) -> float:
+    ends = [np.array([(s.start, s.end) for s in segments]) for segments in (one, other)]
+    return float(np.max(np.abs(ends[0] - ends[1]))) if ends[0].shape == ends[1].shape and ends[0].size else 0.0

@@ -1,0 +1,106 @@
+"""What a dimension is called: the parameter, or the simple expression in parameters, that it always equals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+import sympy as sp
+
+from derive.mechanism import Joint, Mechanism, Parameter, Role
+from derive.program import DEGREE
+from derive.run import Array, evaluate
+from derive.sampling import sample_machine
+
+Values = Mapping[str, Array]
+LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)
+_SEEDS = (11, 12, 13)
+"""Machines of other dimensions, by which a coincidence in this one is found out."""
+_SAME = 1e-9
+
+
+def interface(mechanism: Mechanism, amount: sp.Expr) -> sp.Expr:
+    """An amount of a chain in the names of axes and parameters, angles in degrees; fixed angles are left out."""
+    names = {j.symbol: axis_name(j) * (DEGREE if j.is_angle else 1) for j in mechanism.joints}
+    named = sp.sympify(amount).xreplace(names)
+    turning = any(j.symbol in amount.free_symbols and j.is_angle for j in mechanism.joints)
+    if turning and not any(j.symbol in amount.free_symbols and not j.is_angle for j in mechanism.joints):
+        named = sp.expand(named / DEGREE)
+        axes = {axis_name(j) for j in mechanism.joints}
+        named = sp.Add(*[t for t in sp.Add.make_args(named) if t.free_symbols & axes])
+    return plain(sp.expand(named.subs(DEGREE, sp.pi / 180)))
+
+
+def plain(label: sp.Expr) -> sp.Expr:
+    """The label in bare names, without what a description knows of their signs."""
+    return label.xreplace({s: sp.Symbol(s.name) for s in label.free_symbols})
+
+
+def axis_name(joint: Joint) -> sp.Symbol:
+    """The axis as a label."""
+    return sp.Symbol(joint.name)
+
+
+def lengths_of(mechanism: Mechanism) -> tuple[Parameter, ...]:
+    """The parameters that are lengths of the machine."""
+    return tuple(p for p in mechanism.parameters if p.role in LENGTHS)
+
+
+class Naming:
+    """Finds what a length is called, by measuring it on machines of other dimensions too."""
+
+    def __init__(self, mechanism: Mechanism, values: Values) -> None:
+        self._parameters = lengths_of(mechanism)
+        self._angles = tuple(p.name for p in mechanism.parameters if p.role is Role.ANGLE)
+        self._machines = [{**values, **_own(mechanism, seed)} for seed in _SEEDS]
+
+    def length(self, measure: Callable[[Values], float]) -> sp.Expr | None:
+        """The parameter, or half of it, that the length is on every machine; None where it is none."""
+        return self._found(lambda machine: abs(measure(machine)), magnitude=True)
+
+    def angle(self, measure: Callable[[Values], float]) -> sp.Expr | None:
+        """The parameter that the angle, in degrees, is on every machine."""
+        measured = np.array([measure(machine) for machine in self._machines])
+        for name in self._angles:
+            given = np.array([float(machine[name]) for machine in self._machines])
+            if np.all(np.abs((measured - given + 180.0) % 360.0 - 180.0) <= _SAME * 360.0):
+                return sp.Symbol(name)
+        return None
+
+    def coordinates(self, entries: Sequence[Callable[[Values], float]]) -> tuple[sp.Expr, ...] | None:
+        """The parameters that the coordinates of a point are; None where one of them is no parameter and not zero."""
+        found = [self._found(entry, magnitude=False) for entry in entries]
+        names = [name for name in found if name is not None]
+        return tuple(names) if len(names) == len(found) and any(n != 0 for n in names) else None
+
+    def _found(self, measure: Callable[[Values], float], *, magnitude: bool) -> sp.Expr | None:
+        measured = np.array([measure(machine) for machine in self._machines])
+        for expression, given in self._candidates(magnitude):
+            if np.all(np.abs(measured - given) <= _SAME * (1.0 + np.abs(given))):
+                return expression
+        return None
+
+    def _candidates(self, magnitude: bool) -> Iterator[tuple[sp.Expr, Array]]:
+        yield sp.Integer(0), np.zeros(len(self._machines))
+        for parameter in self._parameters:
+            given = np.array([float(machine[parameter.name]) for machine in self._machines])
+            for factor in (sp.Integer(1), sp.Rational(1, 2)):
+                scaled = given * float(factor)
+                yield factor * sp.Symbol(parameter.name), np.abs(scaled) if magnitude else scaled
+
+
+def _own(mechanism: Mechanism, seed: int) -> dict[str, Array]:
+    """The description's own parameters of another machine. What is zero in this one is not zero there."""
+    generator = np.random.default_rng(seed)
+    drawn = sample_machine(mechanism, seed)
+    found = {}
+    for parameter in mechanism.parameters:
+        is_zero = parameter.role in (*LENGTHS, Role.ANGLE) and parameter.nominal == 0
+        found[parameter.name] = np.asarray(generator.uniform(1.0, 2.0)) if is_zero else drawn[parameter.name]
+    return found
+
+
+def vector_at(entries: Sequence[sp.Expr], values: Values) -> Array:
+    """The entries as numbers; a vector in the plane lies at z = 0."""
+    found = [float(evaluate(sp.sympify(e), values)) for e in entries]
+    return np.array([*found, *[0.0] * (3 - len(found))])

@@ -1,0 +1,80 @@
+"""Which pose is drawn: the zero pose where the mechanism stands there as it is usually built, else a nominal one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from derive.drawing.labels import Values
+from derive.drawing.scene import Frame, frame_of
+from derive.kinematics import Kinematics
+from derive.mechanism import DescriptionError
+from derive.program import Status
+from derive.run import evaluate
+from derive.selftest_calls import FRAME, Tested, forward, tested
+from derive.selftest_cases import Bytes, Reals
+
+
+@dataclass(frozen=True)
+class Pose:
+    """One pose of a machine: axis values, the frame as the programs have it, and the configuration there."""
+
+    axes: Reals
+    frame: Reals
+    configuration: Bytes
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether every axis is at zero."""
+        return not any(self.axes)
+
+    @property
+    def tool(self) -> Frame:
+        """The frame at the end of the mechanism."""
+        return frame_of(self.frame)
+
+
+def nominal_machine(kinematics: Kinematics, **changed: float) -> Tested:
+    """The machine with nominal dimensions and no offsets."""
+    return tested(kinematics, {p.name: p.nominal for p in kinematics.parameters} | changed)
+
+
+def pose_at(machine: Tested, axes: Reals) -> Pose | None:
+    """The pose at these axis values; None where there is none."""
+    status, frame, configuration = forward(machine, axes)
+    return Pose(axes, frame, configuration) if status is Status.OK else None
+
+
+def drawn_pose(machine: Tested) -> Pose:
+    """The pose that is drawn. Raises `DescriptionError` where the nominal joint values of a closed loop fit no pose."""
+    mechanism = machine.kinematics.mechanism
+    if mechanism.home:
+        found = pose_at(machine, machine.home)
+    else:
+        found = pose_at(machine, (0.0,) * len(mechanism.joints))
+        if found is None or (mechanism.chain is None and not _is_usual(machine, found)):
+            found = pose_at(machine, tuple(j.nominal for j in mechanism.joints))
+    if found is None:
+        raise DescriptionError("no pose can be drawn: the nominal values of its joints fit no pose of the mechanism")
+    return found
+
+
+def _is_usual(machine: Tested, pose: Pose) -> bool:
+    """Whether the mechanism stands there in its first configuration, and no length that is a joint vanishes."""
+    mechanism = machine.kinematics.mechanism
+    values = values_at(machine, pose)
+    bars = mechanism.bars or mechanism.rods
+    whole = all(float(evaluate(bar.length, values)) > 0 for bar in bars)
+    return whole and 2 not in pose.configuration[: len(mechanism.branches)]
+
+
+def values_at(machine: Tested, pose: Pose) -> Values:
+    """Everything a description reads, by name: parameters, joint values, and the pose of the tool."""
+    mechanism = machine.kinematics.mechanism
+    values = dict(machine.values)
+    for joint, axis in zip(mechanism.joints, pose.axes, strict=True):
+        motor = np.asarray(axis * float(evaluate(joint.unit, values)))
+        values[joint.motor.name] = motor
+        values[joint.symbol.name] = np.asarray(motor + evaluate(joint.coupling, values))
+    return values | {name: np.asarray(value) for name, value in zip(FRAME, pose.frame, strict=True)}

@@ -1,0 +1,1 @@
+"""A drawing as a picture: projected, arranged on a page, and written as PNG and SVG."""

@@ -1,0 +1,122 @@
+"""The machine on its part of the page: bodies first, joints on them, names last."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import sympy as sp
+
+from derive.drawing.drawing import Drawing
+from derive.drawing.scene import Body, Dimension, Frame, Point, Segment, Turn
+from derive.emit.picture import style
+from derive.emit.picture.ink import Vector
+from derive.emit.picture.naming import name_angle, name_axes, name_length, name_point, name_slide, name_turn
+from derive.emit.picture.placing import Sheet, around
+from derive.emit.picture.rails import FREE, rails, slide_arrow
+from derive.emit.picture.spelling import spelled
+from derive.emit.picture.symbols import angle_lines, bar, ground, opening, rail, triad, turning
+from derive.emit.picture.view import Box, fitted
+
+_MARGINS = (78.0, 62.0, 84.0, 58.0)
+"""Room for names about the machine: left, below, right, above."""
+_ANGLE_RADIUS = 46.0
+_CLOSE = 30.0
+"""Joints nearer than this would cover each other."""
+_ORIGIN = Frame((0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+
+
+class Machine:
+    """Draws a machine to a sheet; `names` spells parameters."""
+
+    def __init__(self, drawing: Drawing, box: Box, names: Mapping[str, str]) -> None:
+        self._scene, self._names = drawing.scene, names
+        self._sheet = Sheet(box)
+        self._rails = rails(self._scene)
+        points = self._points()
+        left, below, right, above = _MARGINS
+        inside = Box(box.left + left, box.bottom + below, box.right - right, box.top - above)
+        self._view = fitted(points, inside, is_planar=drawing.is_planar)
+        heights = [self._view.page(p)[1] for p in points]
+        self.needed = float(max(heights) - min(heights)) + below + above
+        """How high it is with its names."""
+        self._taken: list[Vector] = []
+        """Where joints are drawn."""
+
+    def _points(self) -> list[Point]:
+        """What must be on the page."""
+        points = [_ORIGIN.position, self._scene.tool.position]
+        points += [p for s in self._scene.segments for p in (s.start, s.end)]
+        points += [p for slide, ends in self._rails.items() if slide.has_rail for p in ends]
+        everywhere = [(FREE * x, 0.0, FREE * x) for x in (-0.5, 0.5)]
+        return points if len(set(points)) > 1 else [*points, *everywhere]
+
+    def drawn(self) -> Sheet:
+        """The sheet with everything on it."""
+        view, scene, sheet = self._view, self._scene, self._sheet
+        for segment in sorted(scene.segments, key=self._order):
+            sheet.draw(bar(segment, view))
+        for place in scene.grounds:
+            sheet.draw(ground(view.page(place), view))
+        for slide in scene.slides:
+            if slide.has_rail:
+                first, last = (view.page(end) for end in self._rails[slide])
+                sheet.draw(rail((first, last), view.page(slide.at)))
+        joints = [(turn, *self._anchored(turn)) for turn in scene.turns]
+        for turn, at, radius in joints:
+            sheet.draw(turning(turn, at, radius, view))
+        self._frames_and_names(joints)
+        for index, arc in enumerate(scene.arcs):
+            radius = _ANGLE_RADIUS + 15.0 * index
+            sheet.draw(angle_lines(arc, radius, view))
+            name_angle(sheet, self._spelled(arc.label), view.page(arc.at), opening(arc, radius, view))
+        for dimension in sorted(scene.dimensions, key=lambda d: -self._length(d)):
+            text = self._spelled(dimension.label) + (" < 0" if dimension.is_negative else "")
+            name_length(sheet, view, dimension, text)
+        for spot in scene.spots:
+            name_point(sheet, f"({', '.join(map(self._spelled, spot.labels))})", view.page(spot.at))
+        return sheet
+
+    def _frames_and_names(self, joints: list[tuple[Turn, Vector, float]]) -> None:
+        view, scene, sheet = self._view, self._scene, self._sheet
+        base, tool = triad(_ORIGIN, style.FRAME, 1.8, view), triad(scene.tool, 0.72 * style.FRAME, 2.8, view)
+        arrows = [list(slide_arrow(s, self._rails[s], view, is_beside=bool(scene.segments))) for s in scene.slides]
+        sheet.draw(mark for marks in (*arrows, *(m for _, m in (*base, *tool))) for mark in marks)
+        for turn, at, radius in joints:
+            name_turn(sheet, view, turn, self._spelled(turn.label), at, radius)
+        for slide, marks in zip(scene.slides, arrows, strict=True):
+            tip = np.array(marks[-1].points[0]) if marks else view.page(self._rails[slide][1])  # type: ignore[union-attr]
+            name_slide(sheet, view, slide, self._spelled(slide.label), tip)
+        name_axes(sheet, "XYZ", base)
+        name_axes(sheet, "xyz", tool)
+        places = around(view.page(scene.tool.position), (24.0, 34.0, 46.0, 60.0))
+        sheet.label("TCP", style.LABEL, style.INK, places, is_bold=True)
+
+    def _anchored(self, turn: Turn) -> tuple[Vector, float]:
+        """Where along its axis a joint is drawn, clear of others; in the plane with a larger arrow instead."""
+        at, radius = self._view.page(turn.at), style.ARC_RADIUS
+        along = self._view.direction(turn.axis)
+        for shift in (0.0, 52.0, -52.0, 104.0, -104.0):
+            place = at + shift * along
+            if self._is_inside(place) and all(np.linalg.norm(place - other) > _CLOSE for other in self._taken):
+                self._taken.append(place)
+                return place, radius
+        self._taken.append(at)
+        alike = sum(1 for other in self._taken if np.linalg.norm(other - at) < 1.0)
+        return at, radius + 13.0 * (alike - 1)
+
+    def _is_inside(self, place: Vector) -> bool:
+        box, room = self._sheet.box, 40.0
+        x, y = (float(v) for v in place)
+        return box.left + room < x < box.right - room and box.bottom + room < y < box.top - room
+
+    def _order(self, segment: Segment) -> tuple[bool, float]:
+        """The base first, then from far to near."""
+        depth = sum(float(self._view.eye @ np.array(p)) for p in (segment.start, segment.end))
+        return segment.body is not Body.BASE, round(depth, 6)
+
+    def _length(self, dimension: Dimension) -> float:
+        return round(float(np.linalg.norm(self._view.page(dimension.end) - self._view.page(dimension.start))), 3)
+
+    def _spelled(self, label: sp.Expr) -> str:
+        return spelled(label, self._names)

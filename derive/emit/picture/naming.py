@@ -1,0 +1,107 @@
+"""Names on the page: of joints, frames and points, and dimensions with their lines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from derive.drawing.scene import Dimension, Slide, Turn
+from derive.emit.picture import style
+from derive.emit.picture.ink import Mark, Vector, head, line
+from derive.emit.picture.placing import Place, Sheet, around
+from derive.emit.picture.symbols import STEPS, arc
+from derive.emit.picture.view import View
+
+_SHORT = 26.0
+"""A dimension shorter than this on the page has a leader and no line with heads."""
+
+
+def name_turn(sheet: Sheet, view: View, turn: Turn, text: str, at: Vector, radius: float) -> None:
+    """The name of a rotary axis, at its arrow."""
+    if view.is_planar:
+        middle = arc(turn, at, radius, view)[2 * STEPS // 3]
+        places = around(middle, (12.0, 18.0, 26.0), toward=(middle - at) / radius)
+    else:
+        places = around(at + 22.0 * view.direction(turn.axis), (radius + 10.0, radius + 18.0, radius + 30.0))
+    sheet.label(text, style.NAME, style.TURN, places, is_bold=True)
+
+
+def name_slide(sheet: Sheet, view: View, slide: Slide, text: str, tip: Vector) -> None:
+    """The name of a linear axis at the tip of its arrow; of a rail that drives share, what they make of it at its end."""
+    along = view.direction(slide.axis)
+    toward = along / max(float(np.linalg.norm(along)), 1e-9)
+    reach = 14.0 + abs(float(toward[0])) * max(0.0, 3.4 * len(text) - 8.0)
+    size, colour = (style.NAME, style.SLIDE) if slide.has_arrow else (style.LABEL, style.FAINT)
+    if not slide.has_arrow and max(slide.axis) > 0.999:
+        text = f"{'XYZ'[int(np.argmax(slide.axis))]} = {text}"
+    sheet.label(text, size, colour, around(tip, (reach, reach + 10.0, reach + 24.0), toward=toward), is_bold=slide.has_arrow)
+
+
+def name_axes(sheet: Sheet, letters: str, tips: Sequence[tuple[Vector, list[Mark]]]) -> None:
+    """The letters of a frame, at the tips of its axes; the one that points at the eye has none."""
+    for letter, colour, (tip, marks) in zip(letters, style.AXES, tips, strict=True):
+        if marks:
+            sheet.label(letter, style.LABEL, colour, around(tip, (10.0, 15.0)), is_bold=True)
+
+
+def name_point(sheet: Sheet, text: str, at: Vector) -> None:
+    """The coordinates of a point, with a leader where they are not beside it."""
+    places = []
+    for place in around(at, (16.0, 26.0, 40.0, 56.0, 76.0)):
+        is_far = bool(np.linalg.norm(place.at - at) > 30.0)
+        leader = (line([at, place.at], style.FAINT, 0.8),) if is_far else ()
+        places.append(Place(place.at + _aside(place.at, at, 3.0 * len(text)), place.cost, leader))
+    sheet.label(text, style.LABEL - 1.5, style.INK, places)
+
+
+def name_angle(sheet: Sheet, text: str, at: Vector, points: Sequence[Vector]) -> None:
+    """The name of an angle, outside its arc."""
+    middle = points[len(points) // 2]
+    toward = (middle - at) / max(float(np.linalg.norm(middle - at)), 1e-9)
+    places = around(middle, (12.0, 20.0, 32.0), toward=toward)
+    aside = [Place(place.at + _aside(place.at, middle, 2.6 * len(text)), place.cost) for place in places]
+    sheet.label(text, style.LABEL, style.INK, aside)
+
+
+def name_length(sheet: Sheet, view: View, dimension: Dimension, text: str) -> None:
+    """A dimension line beside what it measures; a leader to the middle where that is too short."""
+    start, end = view.page(dimension.start), view.page(dimension.end)
+    length = float(np.linalg.norm(end - start))
+    sheet.label(text, style.LABEL, style.INK, _lines(start, end) if length > _SHORT else _leaders(start, end, len(text)))
+
+
+def _lines(start: Vector, end: Vector) -> list[Place]:
+    along = (end - start) / float(np.linalg.norm(end - start))
+    across = np.array([-along[1], along[0]])
+    found = []
+    for distance in (24.0, -24.0, 38.0, -38.0, 54.0, -54.0, 72.0, -72.0):
+        aside = distance * across
+        found.append(Place((start + end) / 2 + aside, 0.35 * abs(distance), _measured(start, end, aside)))
+    return found
+
+
+def _leaders(start: Vector, end: Vector, letters: int) -> list[Place]:
+    middle = (start + end) / 2
+    found = []
+    for place in around(middle, (26.0, 40.0, 58.0, 80.0)):
+        marks = (line([start, end], style.INK, 2.0), line([middle, place.at], style.FAINT, 0.9))
+        found.append(Place(place.at + _aside(place.at, middle, 2.6 * letters), 0.3 * place.cost, marks))
+    return found
+
+
+def _aside(place: Vector, at: Vector, shift: float) -> Vector:
+    return np.array([float(np.sign(np.round(place[0] - at[0], 3))) * shift, 0.0])
+
+
+def _measured(start: Vector, end: Vector, aside: Vector) -> tuple[Mark, ...]:
+    """A dimension line with two heads, and the lines that extend to it."""
+    first, last = start + aside, end + aside
+    over = aside / float(np.linalg.norm(aside)) * 4.0
+    return (
+        line([start, first + over], style.FAINT, 0.8),
+        line([end, last + over], style.FAINT, 0.8),
+        line([first, last], style.FAINT, 1.1),
+        head(first, start - end, style.FAINT, 0.8),
+        head(last, end - start, style.FAINT, 0.8),
+    )

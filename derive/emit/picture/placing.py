@@ -1,0 +1,102 @@
+"""Where labels go: of several places, the one that covers least of what is there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from derive.emit.picture.canvas import text_width
+from derive.emit.picture.ink import Area, Line, Mark, Text, Vector, spot
+from derive.emit.picture.view import Box
+
+_STEP = 5.0
+_OVER_TEXT, _OVER_INK, _OUTSIDE = 0.6, 3.0, 2000.0
+"""The cost of a covered pixel of text, of a covered piece of a line, and of a place outside the page."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A place for a label, what it costs by itself, and what else is drawn with it."""
+
+    at: Vector
+    cost: float
+    marks: tuple[Mark, ...] = ()
+
+
+@dataclass
+class Sheet:
+    """What is on the page so far."""
+
+    box: Box
+    marks: list[Mark] = field(default_factory=list)
+    _texts: list[tuple[float, float, float, float]] = field(default_factory=list)
+    _ink: list[Vector] = field(default_factory=list)
+
+    def draw(self, marks: Iterable[Mark]) -> None:
+        """Add marks, which labels then keep clear of."""
+        for mark in marks:
+            self.marks.append(mark)
+            if isinstance(mark, Text):
+                self._texts.append(_extent(mark))
+            else:
+                self._ink.append(_sampled(mark))
+
+    def label(self, text: str, size: float, colour: str, places: Sequence[Place], *, is_bold: bool = False) -> None:
+        """Put a label at the best of its places."""
+
+        def at(place: Place) -> Text:
+            return Text(text, spot(place.at), size, colour, is_bold=is_bold)
+
+        best = min(places, key=lambda place: round(place.cost + self._cost(at(place), place.marks), 3))  # the first of equals
+        self.draw((*best.marks, at(best)))
+
+    def _cost(self, text: Text, marks: Sequence[Mark]) -> float:
+        left, bottom, right, top = _extent(text)
+        box = self.box
+        cost = _OUTSIDE * (left < box.left or right > box.right or bottom < box.bottom or top > box.top)
+        for other in self._texts:
+            wide = min(right, other[2]) - max(left, other[0])
+            high = min(top, other[3]) - max(bottom, other[1])
+            cost += _OVER_TEXT * wide * high if wide > 0 and high > 0 else 0.0
+        ink = np.vstack(self._ink) if self._ink else np.zeros((0, 2))
+        inside = (ink[:, 0] > left) & (ink[:, 0] < right) & (ink[:, 1] > bottom) & (ink[:, 1] < top)
+        cost += _OVER_INK * float(np.count_nonzero(inside))
+        for mark in marks:
+            for x, y in _sampled(mark):
+                cost += sum(12.0 for a, b, c, d in self._texts if a < x < c and b < y < d)
+        return cost
+
+
+def around(at: Vector, distances: Sequence[float], *, toward: Vector | None = None) -> list[Place]:
+    """Places about a point, preferably in a direction."""
+    found = []
+    for distance in distances:
+        for angle in np.arange(0.0, 2 * np.pi, np.pi / 8):
+            direction = np.array([np.cos(angle), np.sin(angle)])
+            away = 0.0 if toward is None else 12.0 * (1.0 - float(direction @ toward))
+            found.append(Place(at + distance * direction * np.array([1.35, 1.0]), 0.25 * distance + away))
+    return found
+
+
+def _extent(text: Text) -> tuple[float, float, float, float]:
+    wide, high = text_width(text.text, text.size, text.is_bold) + 5.0, 1.3 * text.size
+    x, y = text.at
+    left = x if text.is_left else x - wide / 2
+    return left, y - high / 2, left + wide, y + high / 2
+
+
+def _sampled(mark: Mark) -> Vector:
+    """Points along a line, or along the edge of an area."""
+    if isinstance(mark, Text):
+        return np.zeros((0, 2))
+    points = [np.array(p) for p in mark.points]
+    if isinstance(mark, Area):
+        points.append(points[0])
+    weight = 2 if isinstance(mark, Line) and mark.width > 4.0 else 1
+    found = [points[0]]
+    for a, b in zip(points, points[1:], strict=False):
+        count = max(1, int(np.linalg.norm(b - a) / _STEP))
+        found += [a + (b - a) * k / count for k in range(1, count + 1)]
+    return np.array(found * weight)

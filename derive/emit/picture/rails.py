@@ -1,0 +1,72 @@
+"""Rails of linear motions, and the arrows beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from derive.drawing.scene import Point, Scene, Slide
+from derive.emit.picture import style
+from derive.emit.picture.ink import Mark, Vector, arrow
+from derive.emit.picture.view import View
+
+_TRAVEL = 0.34
+"""How long a rail is, as a part of the machine."""
+FREE = 100.0
+"""The size of a machine without lengths."""
+_BACK = 0.25
+"""How much of a rail lies behind its zero."""
+_ASIDE, _ALONE = 15.0, 64.0
+"""How far an arrow is from its rail, and how long it is without one, in pixels."""
+
+Ends = tuple[Point, Point]
+
+
+def rails(scene: Scene) -> dict[Slide, Ends]:
+    """The ends of every rail. Rails that begin in one point are drawn one on the other, as slides are mounted."""
+    travel = _TRAVEL * (scene.size or FREE)
+    above: dict[Point, Vector] = {}
+    found = {}
+    for slide in scene.slides:
+        axis, at = np.array(slide.axis), np.array(slide.at)
+        start = above.get(slide.at)
+        back = 0.0 if start is not None else _BACK if slide.has_arrow else 1.0
+        first = at + (np.zeros(3) if start is None else start)
+        found[slide] = (_point(first - back * travel * axis), _point(first + travel * axis))
+        if slide.has_rail and slide.has_arrow:
+            above[slide.at] = first - at + travel * axis
+    return found
+
+
+def is_stacked(scene: Scene) -> bool:
+    """Whether some rails begin in one point."""
+    places = [slide.at for slide in scene.slides if slide.has_rail and slide.has_arrow]
+    return len(set(places)) < len(places)
+
+
+def slide_arrow(slide: Slide, ends: Ends, view: View, *, is_beside: bool) -> Iterator[Mark]:
+    """The arrow in positive direction: along the rail where there is one; `is_beside` keeps it off a bar else."""
+    if not slide.has_arrow:
+        return
+    along = view.direction(slide.axis)
+    unit = along / max(float(np.linalg.norm(along)), 1e-9)
+    aside = _ASIDE * np.array([-unit[1], unit[0]])
+    if slide.has_rail:
+        start, end = view.page(_on_rail(slide.at, ends)), view.page(ends[1])
+        yield from arrow([start + 0.2 * (end - start) + aside, start + 0.9 * (end - start) + aside], style.SLIDE, 2.4)
+        return
+    first = view.page(slide.at) + (aside if is_beside else 0.0)
+    yield from arrow([first, first + _ALONE * along / max(float(np.linalg.norm(along)), 0.5)], style.SLIDE, 2.4)
+
+
+def _on_rail(place: Point, ends: Ends) -> Point:
+    """The place of a rail that is nearest: its zero, or the beginning of a rail that stands on another."""
+    begin, end = map(np.array, ends)
+    along = end - begin
+    return _point(begin + np.clip((np.array(place) - begin) @ along / (along @ along), 0.0, 1.0) * along)
+
+
+def _point(values: Vector) -> Point:
+    x, y, z = (float(v) for v in values)
+    return (x, y, z)

@@ -1,0 +1,169 @@
+"""The shapes of links, joints, rails and frames on the page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from derive.drawing.scene import Arc, Body, Frame, Segment, Turn
+from derive.emit.picture import style
+from derive.emit.picture.ink import Area, Mark, Vector, area, arrow, line
+from derive.emit.picture.view import View
+
+_WIDTHS = {
+    Body.LINK: style.LINK_WIDTH,
+    Body.ROD: style.ROD_WIDTH,
+    Body.PLATE: style.PLATE_WIDTH,
+    Body.BASE: style.BASE_WIDTH,
+}
+_COLOURS = {Body.LINK: style.LINK, Body.ROD: style.ROD, Body.PLATE: style.PLATE, Body.BASE: style.BASE}
+_SWEEP = np.radians(75.0)
+"""How far an arrow about an axis goes in the plane; in space it goes about most of the axis."""
+_AROUND = np.radians(250.0)
+STEPS = 28
+
+
+def bar(segment: Segment, view: View) -> list[Mark]:
+    """A body as a stroke with an edge."""
+    ends = [view.page(segment.start), view.page(segment.end)]
+    width = _WIDTHS[segment.body]
+    if segment.body is Body.BASE:
+        return [line(ends, _COLOURS[segment.body], width)]
+    return [line(ends, style.LINK_EDGE, width + 1.6), line(ends, _COLOURS[segment.body], width)]
+
+
+def ground(at: Vector, view: View) -> list[Mark]:
+    """Where the machine is held: a plate in space, a triangle with hatching in the plane."""
+    if not view.is_planar:
+        corners = [at + 26.0 * (view.axes @ np.array([x, y, 0.0])) for x, y in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+        return [area(corners, style.BASE, style.FAINT)]
+    foot = at + np.array([0.0, -20.0])
+    marks: list[Mark] = [area([at, foot + [-13.0, 0.0], foot + [13.0, 0.0]], style.BASE, style.FAINT)]
+    marks.append(line([foot + [-19.0, 0.0], foot + [19.0, 0.0]], style.INK, 1.4))
+    return marks + [line([foot + [x, 0.0], foot + [x - 6.0, -6.0]], style.INK, 1.0) for x in (-12.0, -4.0, 4.0, 12.0, 19.0)]
+
+
+def basis(axis: Sequence[float], toward: Sequence[float] | Vector | None) -> tuple[Vector, Vector, Vector]:
+    """The axis, a direction across it, and the one a quarter turn on."""
+    z = np.array(axis, dtype=float)
+    z /= np.linalg.norm(z)
+    guess = np.array(toward if toward is not None else ([1.0, 0.0, 0.0] if abs(z[0]) < 0.9 else [0.0, 1.0, 0.0]), dtype=float)
+    x = guess - (guess @ z) * z
+    x /= np.linalg.norm(x)
+    return z, x, np.cross(z, x)
+
+
+def arc(turn: Turn, at: Vector, radius: float, view: View) -> list[Vector]:
+    """The way of a positive turn about the axis through a point of the page."""
+    if view.is_planar:
+        z, x, y = basis(turn.axis, turn.zero or turn.toward)
+        turned = _angle(x, y, turn.toward) if turn.zero is not None and turn.toward is not None else 0.0
+        angles = np.linspace(0.0, turned if turned > _SWEEP / 2 else _SWEEP, STEPS)
+    else:
+        z, x, y = basis(turn.axis, view.eye)
+        angles = np.linspace(-_AROUND / 2, _AROUND / 2, STEPS)
+    return [at + radius * (view.axes @ (np.cos(a) * x + np.sin(a) * y)) for a in angles]
+
+
+def _angle(x: Vector, y: Vector, toward: Sequence[float]) -> float:
+    vector = np.array(toward)
+    return float(np.arctan2(vector @ y, vector @ x))
+
+
+def turning(turn: Turn, at: Vector, radius: float, view: View) -> list[Mark]:
+    """A rotary joint: its body, its axis, and an arrow in its positive direction."""
+    if view.is_planar:
+        r = style.JOINT_RADIUS - 2.0
+        marks: list[Mark] = [area(_circle(at, r), style.JOINT, style.TURN, 1.6), area(_circle(at, 2.0), style.TURN, style.TURN)]
+        marks += _reference(turn, turn.zero or turn.toward, at, radius + 14.0, view)
+        return [*marks, *arrow(arc(turn, at, radius, view), style.TURN, 2.2)]
+    z = view.axes @ np.array(turn.axis)
+    marks = [line([at - 34.0 * z, at + 44.0 * z], style.TURN, 1.0, (9.0, 3.0, 2.0, 3.0))]
+    marks += _cylinder(turn, at, view)
+    marks += _reference(turn, turn.zero, at, 3.0 * radius, view)
+    return [*marks, *arrow(arc(turn, at + 22.0 * z, radius * 0.85, view), style.TURN, 2.2)]
+
+
+def _reference(turn: Turn, direction: Sequence[float] | None, at: Vector, length: float, view: View) -> list[Mark]:
+    """A dashed line from which a turn is counted."""
+    if direction is None:
+        return []
+    _, x, _ = basis(turn.axis, direction)
+    return [line([at, at + length * (view.axes @ x)], style.TURN, 1.0, (4.0, 3.0))]
+
+
+def opening(arc_: Arc, radius: float, view: View) -> list[Vector]:
+    """The points of an angle between two directions, the short way."""
+    start, end = np.array(arc_.start), np.array(arc_.end)
+    angle = float(np.arccos(np.clip(start @ end, -1.0, 1.0)))
+    across = end - (end @ start) * start
+    across /= np.linalg.norm(across)
+    at = view.page(arc_.at)
+    return [at + radius * (view.axes @ (np.cos(a) * start + np.sin(a) * across)) for a in np.linspace(0.0, angle, STEPS)]
+
+
+def angle_lines(arc_: Arc, radius: float, view: View) -> list[Mark]:
+    """An angle of the machine: both directions, and an arrow from the first to the second."""
+    at, points = view.page(arc_.at), opening(arc_, radius, view)
+    sides: list[Mark] = [line([at, at + 1.25 * (p - at)], style.FAINT, 0.9, (3.0, 3.0)) for p in (points[0], points[-1])]
+    return [*sides, *arrow(points, style.FAINT, 1.2, 0.8)]
+
+
+def _cylinder(turn: Turn, at: Vector, view: View) -> list[Area]:
+    z, x, y = basis(turn.axis, view.eye)
+    half = 12.0 * (view.axes @ z)
+    ring = [style.JOINT_RADIUS * (view.axes @ (np.cos(a) * x + np.sin(a) * y)) for a in np.linspace(0, 2 * np.pi, 25)[:-1]]
+    near = half if float(z @ view.eye) >= 0 else -half
+    body = hull([at + side + p for side in (half, -half) for p in ring])
+    return [area(body, style.JOINT, style.TURN, 1.4), area([at + near + p for p in ring], "#eef4fb", style.TURN, 1.2)]
+
+
+def hull(points: Sequence[Vector]) -> list[Vector]:
+    """The convex hull of points of the page, counter-clockwise (Andrew's monotone chain)."""
+    ordered = sorted(tuple(np.round(p, 6)) for p in points)
+    chains = []
+    for side in (ordered, ordered[::-1]):
+        chain: list[tuple[float, ...]] = []
+        for p in side:
+            while len(chain) > 1 and _left(chain[-2], chain[-1], p) <= 0:
+                chain.pop()
+            chain.append(p)
+        chains.append(chain[:-1])
+    return [np.array(p) for p in (*chains[0], *chains[1])]
+
+
+def _left(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _circle(at: Vector, radius: float) -> list[Vector]:
+    return [at + radius * np.array([np.cos(a), np.sin(a)]) for a in np.linspace(0, 2 * np.pi, 29)[:-1]]
+
+
+def rail(ends: tuple[Vector, Vector], at: Vector) -> list[Mark]:
+    """A rail, and the carriage on it."""
+    along = ends[1] - ends[0]
+    length = float(np.linalg.norm(along))
+    x = along / length if length > 1e-9 else np.array([1.0, 0.0])
+    y = np.array([-x[1], x[0]])
+    corners = [at + a * x + b * y for a, b in ((11, 7), (-11, 7), (-11, -7), (11, -7))]
+    return [
+        line(ends, style.SLIDE, 6.4),
+        line(ends, style.RAIL, 4.4),
+        area(corners, "#f7ece2", style.SLIDE, 1.4),
+    ]
+
+
+def triad(frame: Frame, size: float, width: float, view: View) -> list[tuple[Vector, list[Mark]]]:
+    """The axes of a frame, each with its tip."""
+    found = []
+    origin = view.page(frame.position)
+    for index in range(3):
+        direction = view.direction([row[index] for row in frame.rotation])
+        tip = origin + size * direction
+        if np.linalg.norm(direction) > 0.1:
+            found.append((tip, arrow([origin, tip], style.AXES[index], width)))
+        else:
+            found.append((origin, []))
+    return found

@@ -1,0 +1,69 @@
+"""From the machine to the page: straight from above for a machine in the plane, an axonometric view else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from derive.drawing.scene import Point
+from derive.emit.picture.ink import Vector
+
+_AZIMUTH, _ELEVATION = np.radians(-74.0), np.radians(26.0)
+"""Where the eye is: X goes to the right and a little down, Y to the right and up, Z up."""
+
+
+@dataclass(frozen=True)
+class Box:
+    """A part of the page."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+
+@dataclass(frozen=True)
+class View:
+    """A parallel projection to a part of the page."""
+
+    axes: Vector
+    """Two rows: what points to the right, and what points up."""
+    scale: float
+    """Pixels of one unit of the machine."""
+    shift: Vector
+    is_planar: bool
+
+    def page(self, point: Iterable[float]) -> Vector:
+        """Where a point of the machine is on the page."""
+        return np.asarray(self.scale * (self.axes @ np.array(list(point))) + self.shift)
+
+    def direction(self, vector: Iterable[float]) -> Vector:
+        """A direction of the machine on the page, not normalised: what points at the eye is short."""
+        return np.asarray(self.axes @ np.array(list(vector)))
+
+    @property
+    def eye(self) -> Vector:
+        """The direction to the eye."""
+        return np.cross(self.axes[0], self.axes[1])
+
+
+def axes_of(is_planar: bool) -> Vector:
+    """The rows of the projection."""
+    if is_planar:
+        return np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    right = [-np.sin(_AZIMUTH), np.cos(_AZIMUTH), 0.0]
+    up = [-np.sin(_ELEVATION) * np.cos(_AZIMUTH), -np.sin(_ELEVATION) * np.sin(_AZIMUTH), np.cos(_ELEVATION)]
+    return np.array([right, up])
+
+
+def fitted(points: Sequence[Point], box: Box, *, is_planar: bool) -> View:
+    """The view in which all points are inside the box, as large as possible, in its middle."""
+    axes = axes_of(is_planar)
+    seen = np.array([axes @ np.array(p) for p in points])
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    room = np.array([box.right - box.left, box.top - box.bottom])
+    scale = float(np.min(room / np.maximum(high - low, 1e-9)))
+    middle = np.array([box.left + box.right, box.bottom + box.top]) / 2
+    return View(axes, scale, middle - scale * (low + high) / 2, is_planar)
