@@ -17,8 +17,8 @@ START = real("start")
 def roots(residual: sp.Expr, start: float, crossing: float, fits: sp.Basic = sp.true) -> tuple[float, Status]:
     """Where the search from `start` ends."""
     value = real("residual")
-    trial = Trial((Let(value, residual),), value, fits, sp.true)
-    loop = search_loop(trial, START, real("crossing"), sp.false)
+    trial = Trial((Let(value, residual),), value, fits)
+    loop = search_loop(trial, START, real("crossing"), sp.false, is_ranked=False)
     program = assemble("search", (loop,), [Output("found", TRIED), Output("accepted", real("accepted"))])
     outputs, status = run(program, {"start": np.asarray(start), "crossing": np.asarray(crossing)})
     accepted = float(outputs["accepted"]) > 0.5
