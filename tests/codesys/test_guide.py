@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
+from softkin import Scara2Z
 
 from derive.__main__ import OUTPUT
 from derive.emit.st_contract import load
@@ -65,6 +67,9 @@ def test_the_demo_moves_a_group() -> None:
     assert done == [
         (0, 0.0, 0.0, 0), (1, 400.0, 100.0, 0), (2, 400.0, -100.0, 0), (2, 400.0, -100.0, 2), (1, 400.0, -100.0, 2)
     ]  # fmt: skip
+    arms = Scara2Z(arm_length_1=300.0, arm_length_2=250.0)
+    for _, x, y, byte in done[1:]:  # within reach of the arms that the guide names
+        arms.inverse(((x, y, 0.0), np.eye(3)), (byte or 1, 0, 0))
     assert not group.refused and demo.iStep == 100 and not demo.jog.Busy
     demo.xJog = True
     demo.axForward[0] = True
