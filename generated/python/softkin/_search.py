@@ -11,8 +11,9 @@ from softkin._core import Mechanism
 from softkin._types import FrameLike, Numbers, Reals, Rotation, Solution, Status, Vector
 
 _FIRST: Reals = (0.0,)
-_SAME = 1e-6
-"""Axes nearer than this (degrees, lengths) are one solution: the search meets what is opposite the reference at both ends."""
+_SAME = 1e-4
+"""Axes nearer than this (degrees, lengths) are one solution. The search meets what lies opposite the reference at both
+ends, and what the residual only touches again beside it; two solutions of a branch have one of another between them."""
 
 
 class SearchedInverse(Mechanism):
