@@ -192,3 +192,35 @@ def test_an_automatic_choice_where_only_slides_tell() -> None:
     assert robot.DISTANCE_AXES == (0, 1, 2)
     assert softkin.Coupled(softkin.Gantry3(), softkin.Wrist2()).DISTANCE_AXES == (3, 4)
     assert softkin.Coupled(softkin.Gantry3(), softkin.Tool()).DISTANCE_AXES == (0, 1, 2)
+
+
+def test_a_diagnosis_names_the_part_that_refuses() -> None:
+    robot = softkin.Coupled(
+        softkin.Scara2Z(arm_length_1=300.0, arm_length_2=250.0, lower_z=-50.0, upper_z=80.0),
+        softkin.CAxis(lower_c=-90.0, upper_c=90.0),
+    )
+    frame, configuration = robot.forward((10.0, 20.0, 30.0, 40.0))
+    assert robot.diagnose(frame, configuration) == (Status.OK, "", 0.0)
+    far = softkin.Frame((600.0, 0.0, 0.0), frame.rotation)
+    found = robot.diagnose(far, configuration)
+    assert found.status is Status.UNREACHABLE and found.reason.startswith("Kin_Scara2_Z: ")
+    assert found.missing == pytest.approx(50.0)
+    high = softkin.Frame((frame.position[0], frame.position[1], 83.0), frame.rotation)
+    found = robot.diagnose(high, configuration)
+    assert found.status is Status.UNREACHABLE and found.reason.startswith("Kin_Scara2_Z: ") and "Z" in found.reason
+    assert found.missing == pytest.approx(3.0)
+    turned, configuration = robot.forward((10.0, 20.0, 30.0, 95.0))
+    found = robot.diagnose(turned, configuration)
+    assert found.status is Status.UNREACHABLE and found.reason.startswith("Kin_CAxis: ") and "C" in found.reason
+    assert found.missing == pytest.approx(5.0)
+    assert robot.diagnose(turned, (7, 0, 0, 0)).status is Status.BAD_INPUT
+    assert robot.diagnose(frame, (1, -2, 1, 1)).status is refused_status(robot, frame, (1, -2, 1, 1))
+
+
+def refused_status(robot: softkin.Coupled, frame: softkin.Frame, configuration: tuple[int, ...]) -> Status:
+    """What the inverse answers."""
+    try:
+        robot.inverse(frame, configuration)
+    except KinematicsError as error:
+        return error.status
+    return Status.OK

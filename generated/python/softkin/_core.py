@@ -210,11 +210,10 @@ class Mechanism(ABC):
         """
         position, rows = self._pose(frame)
         near = self._near(reference)
-        found = (self.DEFAULT_CONFIGURATION if configuration is None else tuple(configuration))[: self.BRANCHES]
-        for place, byte in enumerate(found):
+        branches, turns = self._read(configuration)
+        for place, byte in zip(self._branch_bytes, branches, strict=True):
             if byte not in (0, 1, 2, 3):
                 return Diagnosis(Status.BAD_INPUT, "byte {byte} of the configuration means nothing".format(byte=place), 0.0)
-        branches, turns = self._read(configuration)
         branch, limits = self._explained()
         refusals: list[Diagnosis] = []
 

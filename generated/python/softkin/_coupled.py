@@ -16,6 +16,7 @@ from softkin._types import (
     Axis,
     Configuration,
     ConfigurationByte,
+    Diagnosis,
     KinematicsError,
     Matrix,
     Reals,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
 _Choice: TypeAlias = tuple[Reals, Reals, Reals]
 """Signs of the branches, turns and reference of one part."""
+_Refusal = TypeVar("_Refusal", Status, Diagnosis)
 _Named = TypeVar("_Named", Axis, ConfigurationByte)
 _ORIGIN: Vector = (0.0, 0.0, 0.0)
 
@@ -135,41 +137,100 @@ class Coupled(Mechanism):
     def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
     ) -> Reals | Status:
+        carrier, wrist = self._split(signs, turns, reference)
+
+        def carry(point: Vector) -> Reals | Status:
+            return self.position_part._branch(point, rotation, *carrier)
+
+        def turn(seen: Rotation) -> Reals | Status:
+            return self.orientation_part._branch(_ORIGIN, seen, *wrist)
+
+        return self._solved(position, rotation, carry, turn)
+
+    def _split(self, signs: Reals, turns: Reals, reference: Reals) -> tuple[_Choice, _Choice]:
+        """What each part is given."""
         first, cut = self.position_part, len(self.position_part.PERIOD_AXES)
         carrier = signs[: first.BRANCHES], turns[:cut], reference[: self._count]
-        wrist = signs[first.BRANCHES :], turns[cut:], reference[self._count :]
+        return carrier, (signs[first.BRANCHES :], turns[cut:], reference[self._count :])
+
+    def _solved(
+        self,
+        position: Vector,
+        rotation: Rotation,
+        carry: Callable[[Vector], Reals | _Refusal],
+        turn: Callable[[Rotation], Reals | _Refusal],
+    ) -> Reals | _Refusal | Status:
+        """The axes of both: those that carry to a point, and those that turn as the flange sees it."""
         if self._flange is not None:
-            return self._orientation_first(position, rotation, carrier, wrist, self._flange)
-        return self._position_first(position, rotation, carrier, wrist)
+            return self._orientation_first(position, rotation, carry, turn, self._flange)
+        return self._position_first(position, rotation, carry, turn)
 
     def _orientation_first(
-        self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice, flange: Rotation
-    ) -> Reals | Status:
+        self,
+        position: Vector,
+        rotation: Rotation,
+        carry: Callable[[Vector], Reals | _Refusal],
+        turn: Callable[[Rotation], Reals | _Refusal],
+        flange: Rotation,
+    ) -> Reals | _Refusal | Status:
         """On a flange that keeps its orientation: the own axes, where they put the end point, and what carries that."""
-        own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
-        if isinstance(own, Status):
+        own = turn(seen_from(flange, rotation))
+        if isinstance(own, Status | Diagnosis):
             return own
         end = self.orientation_part._forward(own)
         if isinstance(end, Status):
             return end
-        axes = self.position_part._branch(plus(position, turned(flange, end[0]), -1.0), rotation, *carrier)
-        return axes if isinstance(axes, Status) else axes + own
+        axes = carry(plus(position, turned(flange, end[0]), -1.0))
+        return axes if isinstance(axes, Status | Diagnosis) else axes + own
 
     def _position_first(
-        self, position: Vector, rotation: Rotation, carrier: _Choice, wrist: _Choice
-    ) -> Reals | Status:
+        self,
+        position: Vector,
+        rotation: Rotation,
+        carry: Callable[[Vector], Reals | _Refusal],
+        turn: Callable[[Rotation], Reals | _Refusal],
+    ) -> Reals | _Refusal | Status:
         """On a flange that the position axes turn: in a pair that is allowed they do not depend on the own axes."""
         shift = self.orientation_part._carried(rotation, *self._axis)
         if isinstance(shift, Status):
             return shift
-        axes = self.position_part._branch(plus(position, shift, -1.0), rotation, *carrier)
-        if isinstance(axes, Status):
+        axes = carry(plus(position, shift, -1.0))
+        if isinstance(axes, Status | Diagnosis):
             return axes
         flange = self.position_part._orientation(axes)
         if isinstance(flange, Status):
             return flange
-        own = self.orientation_part._branch(_ORIGIN, seen_from(flange, rotation), *wrist)
-        return own if isinstance(own, Status) else axes + own
+        own = turn(seen_from(flange, rotation))
+        return own if isinstance(own, Status | Diagnosis) else axes + own
+
+    def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
+        """The branch and the limits of both, with reasons that name the part."""
+        first, second = self.position_part, self.orientation_part
+        (carried, carried_limits), (own, own_limits) = first._explained(), second._explained()
+
+        def branch(
+            position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
+        ) -> Reals | Diagnosis:
+            carrier, wrist = self._split(signs, turns, reference)
+
+            def carry(point: Vector) -> Reals | Diagnosis:
+                return _of(first, carried(point, rotation, *carrier))
+
+            def turn(seen: Rotation) -> Reals | Diagnosis:
+                return _of(second, own(_ORIGIN, seen, *wrist))
+
+            axes = self._solved(position, rotation, carry, turn)
+            return Diagnosis(axes, f"{second.NAME}: its end point", 0.0) if isinstance(axes, Status) else axes
+
+        def limits(axes: Reals) -> Diagnosis:
+            found = Diagnosis(Status.OK, "", 0.0)
+            if first.checks_limits:
+                found = _of(first, carried_limits(axes[: self._count]))
+            if found.status is Status.OK and second.checks_limits:
+                found = _of(second, own_limits(axes[self._count :]))
+            return found
+
+        return branch, limits
 
     def _limits(self, axes: Reals) -> Status:
         status = self.position_part._limit_status(axes[: self._count])
@@ -225,6 +286,16 @@ def _check(position: Mechanism, orientation: Mechanism) -> None:
             f"{orientation!r} then has its end point: only shifts along the axis of that turn, and those whose "
             "direction the commanded rotation tells, may be there; all others must be 0"
         )
+
+
+_Answer = TypeVar("_Answer", Diagnosis, Reals | Diagnosis)
+
+
+def _of(part: Mechanism, answer: _Answer) -> _Answer:
+    """The answer; a reason names the part that it is about."""
+    if isinstance(answer, Diagnosis) and answer.status is not Status.OK:
+        return answer._replace(reason=f"{part.NAME}: {answer.reason}")
+    return answer
 
 
 def _refused(message: str) -> KinematicsError:
