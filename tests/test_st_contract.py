@@ -11,7 +11,6 @@ import pytest
 from derive.__main__ import OUTPUT
 from derive.emit.st_contract import load
 from tests.st import ast
-from tests.st.blark_grammar import parse_text_with_blark
 from tests.st.contract import INTERFACES, plain
 from tests.st.library import Library, compile_st
 
@@ -202,12 +201,3 @@ def test_vendor_ranges_are_half_open() -> None:
     assert "{attribute 'sm_kin_param_range' := ']0 .. 800]'}" in inputs["dLinkLength1"].pragmas
     assert "{attribute 'sm_kin_param_range' := '[-200 .. 200]'}" in inputs["dPitchZC"].pragmas
     assert {"xCheckLimits", "dOffsetA1", "dLowerA4", "dUpperA4"} <= inputs.keys()
-
-
-@pytest.mark.slow
-def test_a_second_grammar_reads_every_kind_of_unit() -> None:
-    """The other grammar takes seconds a unit: the shared objects and the units that differ most."""
-    chosen = [name for name in FILES if name.startswith("softkin/")]
-    chosen += ["scara/Kin_Scara4_ZCcoupled_Type1.st", "polar/Kin_Crane.st", "gantry/Softkin_GantryCutter2.st"]
-    for name in chosen:
-        assert parse_text_with_blark(FILES[name], name)
