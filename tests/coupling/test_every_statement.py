@@ -9,6 +9,8 @@ from tests.coupling import test_structured_text as tried
 from tests.coupling.blocks import ORIENTATIONS, Carried, twins_of
 from tests.execution import test_configuration_blocks, test_initialise, values
 from tests.execution.controller import NOT_INITIALIZED
+from tests.execution.reasons import provoke
+from tests.execution.samples import Sample
 from tests.execution.statements import Statements
 from tests.execution.units import compiled, file_of, text_of
 
@@ -65,6 +67,23 @@ def _limits_and_garbage(one: tried.Twins) -> None:
             changed = {parameter.name: 0.0 if parameter.kind in ("flag", "sign") else wrong}
             block.initialise({**one.robot.parameters, **changed})
             block.inverse((0.0, 0.0, 0.0), sample.rotation, data, sample.axes)
+    _refused_by_limits(one, sample)
+    provoke(one, sample)
+
+
+def _refused_by_limits(one: tried.Twins, sample: Sample) -> None:
+    """Every axis below its lower limit, and above its upper one, on a branch that is named and on any."""
+    closed = one.robot.forward(sample.axes)[1]
+    for axis, value in zip(one.robot.AXES, sample.axes, strict=True):
+        for low, high in ((value + 5.0, value + 50.0), (value - 50.0, value - 5.0)):
+            block = Carried(one.library, one.mechanism)
+            limits = {f"lower_{axis.name.lower()}": low, f"upper_{axis.name.lower()}": high}
+            robot = type(one.robot)(**{**one.robot.parameters, **limits})
+            block.initialise(robot.parameters)
+            for data in (closed, (0,) * len(closed)):
+                reason, missing = block.diagnose((0.0, 0.0, 0.0), sample.rotation, data, sample.axes)
+                found = robot.diagnose(((0.0, 0.0, 0.0), sample.rotation), data, sample.axes)
+                assert (reason, missing) == (found.reason, pytest.approx(found.missing, rel=1e-9, abs=1e-9))
 
 
 def _before_initialize(mechanism: Mechanism) -> None:
@@ -76,6 +95,7 @@ def _before_initialize(mechanism: Mechanism) -> None:
     assert fresh.forward(sample.axes)[0] == fresh.jacobian(sample.axes)[0] == NOT_INITIALIZED
     assert fresh.inverse((0.0, 0.0, 0.0), sample.rotation, data, sample.axes)[0] == NOT_INITIALIZED
     assert fresh.is_singular(sample.axes)
+    assert fresh.diagnose((0.0, 0.0, 0.0), sample.rotation, data, sample.axes) == ("not initialized", 0.0)
     properties = values.meaningless(twins.library, values.PROPERTIES_TYPE)
     fresh.block.call("GetAxisProperties", props=properties, udiAxis=0)
     assert properties.limits.xUnlimited
