@@ -18,7 +18,7 @@ check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
 
 test: $(READY)
-	$(RUN) -m pytest -n 2
+	$(RUN) -m pytest -n 2 --dist loadfile
 
 bench: $(BENCH)/ready
 	PYTHONPATH=generated/python $(BENCH)/bin/python -m bench
