@@ -18,7 +18,7 @@ check: $(READY)
 	$(RUN) -m derive check $(OPTIONS)
 
 test: $(READY)
-	$(RUN) -m pytest -n 2 --dist loadfile
+	$(RUN) -m pytest -n 2
 
 bench: $(BENCH)/ready
 	PYTHONPATH=generated/python $(BENCH)/bin/python -m bench
