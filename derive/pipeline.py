@@ -1,4 +1,4 @@
-"""From mechanisms to files: derive, ask the witness, render. Two processes share the mechanisms."""
+"""From mechanisms to files: derive, ask the witness, render. Two processes share the mechanisms, then the languages."""
 
 from __future__ import annotations
 
@@ -80,13 +80,15 @@ def languages(profile: str | None = None) -> tuple[Language, ...]:
 
 
 def render_all(built: Sequence[Built], outputs: Sequence[Language]) -> dict[str, bytes]:
-    """All generated files: path below the output folder → bytes."""
+    """All generated files: path below the output folder → bytes. Every language is rendered in a process of its own."""
     kinematics = tuple(b.kinematics for b in built)
-    texts = {
-        str(Path(language.name) / name): text.encode()
-        for language in outputs
-        for name, text in sorted(language.render(kinematics).items())
-    }
+    with ProcessPoolExecutor(max_workers=min(PROCESSES, len(outputs))) as pool:
+        rendered = [pool.submit(language.render, kinematics) for language in outputs]
+        texts = {
+            str(Path(language.name) / name): text.encode()
+            for language, files in zip(outputs, rendered, strict=True)
+            for name, text in sorted(files.result().items())
+        }
     return texts | {name: data for one in built for name, data in one.pictures.items()}
 
 
