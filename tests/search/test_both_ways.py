@@ -83,11 +83,13 @@ def test_the_solutions_of_a_slot_are_ranked_by_how_far_they_are() -> None:
 
 
 def test_a_slot_holds_a_solution_once_in_singular_poses_too() -> None:
-    robot = arm(60.0)
+    robot, solved = arm(60.0), 0
     for axes in np.random.default_rng(4).choice((-90.0, 0.0, 90.0, 180.0), (30, 6)):
         for slot in robot.inverse_all(posed(frame(axes, 60.0)), axes):
             found = [slot.axes, *slot.others] if slot.axes is not None else []
             assert all(apart(np.array(a), np.array(b)) > 1e-5 for a, b in combinations(found, 2))
+            solved += len(found)
+    assert solved > 100
 
 
 def test_a_solution_beyond_the_limits_gives_way_to_another_of_its_slot() -> None:
