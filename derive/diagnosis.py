@@ -76,8 +76,7 @@ class Reasons:
     def _reason(self, note: str, missing: Missing) -> str:
         subject, colon, rest = note.removeprefix("limits of ").partition(":")
         subject = self.axes.get(subject, subject)
-        text = f"{subject}{colon}{rest}{missing.side}" + (f" [{missing.unit}]" if missing.unit else "")
-        return text.replace("²", "^2").replace("'", "")
+        return f"{subject}{colon}{rest}{missing.side}" + (f" [{missing.unit}]" if missing.unit else "")
 
     def _missing(self, part: sp.Basic) -> Missing:
         part = _told(part)
@@ -123,7 +122,6 @@ class Reasons:
                 needed = sp.Add(rod**2, *[s * b for s, b in zip(signs, below, strict=True)])
                 return sp.Abs(Root(needed) - rod)
         return None
-
 
     def _signed(self, value: sp.Expr) -> set[sp.Symbol]:
         """The names in it of what may be negative."""

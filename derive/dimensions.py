@@ -1,4 +1,4 @@
-"""The dimensions of a machine: the parameters of a description, by what they are."""
+"""The dimensions of a machine: the parameters of a description, by what they are, and conditions between them."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import Enum
 
 import sympy as sp
 
-from derive.program import DEGREE, real
+from derive.program import DEGREE, Let, real
 from derive.quantity import Quantity
 
 
@@ -116,3 +116,13 @@ def sign(name: str, meaning: str, *, nominal: int = 1) -> Parameter:
     """A direction: +1 or -1."""
     symbol = sp.Symbol(name, real=True, nonzero=True)  # its square is one
     return Parameter(symbol, name, Role.SIGN, meaning, "", -1.0, 1.0, False, 1.0, float(nominal))
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """A condition between parameters that Initialize checks."""
+
+    condition: sp.Basic
+    message: str
+    steps: tuple[Let, ...] = ()
+    """Values under names that this condition and those after it read."""

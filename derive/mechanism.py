@@ -15,6 +15,7 @@ from enum import Enum
 import sympy as sp
 
 from derive.dimensions import (
+    Constraint,
     Parameter,
     Role,
     angle,
@@ -32,7 +33,7 @@ from derive.dimensions import (
 )
 from derive.frames import Chain
 from derive.joints import COORDINATE_NAMES, Interval, Joint, Kind, arc, helical, linear, rotary
-from derive.program import Let, real
+from derive.program import real
 from derive.quantity import Quantity
 
 TURN = 2 * sp.pi
@@ -190,16 +191,6 @@ class Limited:
     value: sp.Expr
     is_angle: bool
     meaning: str
-
-
-@dataclass(frozen=True)
-class Constraint:
-    """A condition between parameters that Initialize checks."""
-
-    condition: sp.Basic
-    message: str
-    steps: tuple[Let, ...] = ()
-    """Values under names that this condition and those after it read."""
 
 
 class Turning(Enum):

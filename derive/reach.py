@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from derive.mechanism import Constraint
+from derive.dimensions import Constraint
 from derive.program import Let, real
 from derive.vectors import Vector, cross, dot, minus, vector
 

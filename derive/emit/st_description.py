@@ -93,8 +93,8 @@ def _workspace(kinematics: Kinematics) -> Iterator[str]:
     elif not bounds:
         yield from wrap(f"Every position that {limits} allow.", _WIDTH)
     else:
-        text = f"A pose inside {limits} is refused for these reasons only; Diagnose says which it is, and by how much:"
-        yield from wrap(text, _WIDTH)
+        why = "Diagnose says which, and by how much if that has a measure"
+        yield from wrap(f"A pose inside {limits} is refused for these reasons only; {why}:", _WIDTH)
         yield ""
     for bound in bounds:
         yield from _item(f"{bound}.")

@@ -119,6 +119,11 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
             yield _Source(_explained(_check_limits(contract)), kinematics.limits)
 
 
+def _quotable(text: str) -> str:
+    """The text as it stands between the quotes of a string."""
+    return text.replace("$", "$$").replace("'", "$'")
+
+
 def _explained(signature: Signature) -> Signature:
     """With outputs that only Diagnose reads."""
     outputs = (Parameter("VAR_OUTPUT", REASON, "INT"), Parameter("VAR_OUTPUT", MISSING, "LREAL"))
@@ -158,7 +163,7 @@ def _method(source: _Source, kinematics: Kinematics, block: Block, contract: Con
     reads = kinematics.reads_rotation
     context: dict[str, object] = {"block": block, "method": name, "call": source.call, "reads_rotation": reads}
     if name == "Diagnose":
-        context["reasons"] = texts(kinematics)
+        context["reasons"] = [_quotable(text) for text in texts(kinematics)]
     if source.program is not None:
         context["program"] = program = _printed(source, source.program, kinematics, block, contract)
         own = own_names(source.program, spelled_inputs(kinematics))

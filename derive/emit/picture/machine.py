@@ -10,7 +10,7 @@ import sympy as sp
 from derive.drawing.drawing import Drawing
 from derive.drawing.scene import Body, Dimension, Frame, Point, Segment, Turn
 from derive.emit.picture import style
-from derive.emit.picture.ink import Vector
+from derive.emit.picture.ink import Area, Vector
 from derive.emit.picture.naming import name_angle, name_axes, name_length, name_point, name_slide, name_turn
 from derive.emit.picture.placing import Sheet, around
 from derive.emit.picture.rails import FREE, rails, slide_arrow
@@ -85,8 +85,8 @@ class Machine:
         for turn, at, radius in joints:
             name_turn(sheet, view, turn, self._spelled(turn.label), at, radius)
         for slide, marks in zip(scene.slides, arrows, strict=True):
-            tip = np.array(marks[-1].points[0]) if marks else view.page(self._rails[slide][1])  # type: ignore[union-attr]
-            name_slide(sheet, view, slide, self._spelled(slide.label), tip)
+            tips = [np.array(mark.points[0]) for mark in marks if isinstance(mark, Area)]
+            name_slide(sheet, view, slide, self._spelled(slide.label), tips[0] if tips else view.page(self._rails[slide][1]))
         name_axes(sheet, "XYZ", base)
         name_axes(sheet, "xyz", tool)
         places = around(view.page(scene.tool.position), (24.0, 34.0, 46.0, 60.0))
