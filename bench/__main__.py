@@ -11,6 +11,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+import softkin
 
 from bench.chain import KR6_R900, UR5, Array, Table, errors
 from bench.contenders import ALL, BATCH, ONE, Contender, contenders
@@ -88,15 +89,27 @@ def _once(contender: Contender, given: Any) -> float:
     if contender.task == BATCH:
         call(given)
         return (time.perf_counter() - start) / ROWS * 1e6
-    for one in given:
-        call(one)
+    if contender.task == ONE:
+        for pose, selection in given:
+            call(pose, selection)
+    else:
+        for pose in given:
+            call(pose)
     return (time.perf_counter() - start) / len(given) * 1e6
+
+
+def _answer(contender: Contender, one: Any) -> Any:
+    """What a call answers; None where it refuses."""
+    try:
+        return contender.call(*one) if contender.task == ONE else contender.call(one)
+    except softkin.KinematicsError:
+        return None
 
 
 def quality(table: Table, contender: Contender, poses: Array) -> Quality:
     """What a contender's answers to poses are worth, by the table."""
     given = contender.inputs(poses)
-    result = contender.call(given) if contender.task == BATCH else [contender.call(one) for one in given]
+    result = contender.call(given) if contender.task == BATCH else [_answer(contender, one) for one in given]
     axes, pose = contender.answers(result)
     missed = errors(table, axes, poses[pose])
     is_right = missed < SOLVED

@@ -25,12 +25,15 @@ ALL, ONE, BATCH = "all solutions, one call", "one solution, one call", "a batch"
 
 @dataclass(frozen=True)
 class Contender:
-    """One way to solve a task. A batch is one call for all poses, any other task one call a pose."""
+    """One way to solve a task. A batch is one call for all poses, any other task one call a pose.
+
+    One solution is asked for with two arguments, the pose and what selects it; anything else with one.
+    """
 
     name: str
     task: str
     inputs: Callable[[Array], Any]
-    call: Callable[[Any], Any]
+    call: Callable[..., Any]
     answers: Callable[[Any], Answers]
     is_ours: bool = False
 
@@ -83,18 +86,11 @@ def _ours(table: Table) -> list[Contender]:
         Contender("softkin branches(frame)", ALL, frames, robot.branches, _slots, True),
         Contender("softkin inverse_all(frame), checked", ALL, frames, robot.inverse_all, looked_at, True),
         Contender("softkin tuple(inverse_all(frame))", ALL, frames, lambda f: tuple(robot.inverse_all(f)), looked_at, True),
-        Contender("softkin branch(frame, signs)", ONE, chosen, lambda c: robot.branch(*c), _single, True),
-        Contender("softkin inverse(frame, configuration), checked", ONE, named, lambda c: _or_none(robot, c), _single, True),
+        Contender("softkin branch(frame, signs)", ONE, chosen, robot.branch, _single, True),
+        Contender("softkin inverse(frame, configuration), checked", ONE, named, robot.inverse, _single, True),
         Contender("softkin inverse_batch, one solution", BATCH, configured, lambda p: robot.inverse_batch(*p), _batch, True),
         Contender("softkin inverse_all_batch, all solutions", BATCH, arrays, lambda p: robot.inverse_all_batch(*p), every, True),
     ]
-
-
-def _or_none(robot: softkin.Mechanism, given: Any) -> Any:
-    try:
-        return robot.inverse(*given)
-    except softkin.KinematicsError:
-        return None
 
 
 def _eaik(table: Table) -> list[Contender]:

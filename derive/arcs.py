@@ -4,6 +4,7 @@ Where a partial step's measure vanishes its angle u is free, and where the measu
 A later two-root step needs |e| <= h; there e = level + along cos u + across sin u (what else e holds of u, its second harmonic,
 vanishes with the measure, and is taken as constant). So cos(u - centre) lies between two bounds: on each side of the centre an
 arc. u moves to the nearest point of the arc on its side, where the motion that this costs, measure times arc, is rounding.
+Nothing of this is done where the measure is large: u is known there, and wrong by less than the boundary is wide.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from derive.algebra import cosine, linear_coefficients, sine
 from derive.problem import Measure, Slope
 from derive.program import (
     FREE_ANGLE,
+    KNOWN_ANGLE,
     ROUNDING,
     Atan2,
     Let,
@@ -209,13 +211,14 @@ def _bound(measure: Measure, condition: _Condition, names: dict[sp.Symbol, sp.Sy
     names_after = [real(f"{f(measure.angle).name}_after_{word}") for f in (cosine, sine)]
     share = measure.value / measure.scale
     chord = Root(sp.Add(*[(a - b) ** 2 for a, b in zip(names_after, before, strict=True)]))
+    known = sp.Gt(share, KNOWN_ANGLE)
     dear = sp.And(sp.Gt(share, FREE_ANGLE), sp.Gt(costs, ROUNDING))
     return [
         *(Let(n, v) for n, v in zip(names_after, after, strict=True)),
         Let(costs, share * chord, "what the motion changes of the pose"),
         Let(stays, Select(sp.Le(sp.Abs(value), size), sp.Integer(1), Select(dear, sp.Integer(1), sp.Integer(0)))),
         *(
-            Let(f(measure.angle), Select(sp.Gt(stays, 0), b, a), "moved to where the rest can be reached")
+            Let(f(measure.angle), Select(known, b, Select(sp.Gt(stays, 0), b, a)), "moved to where the rest can be reached")
             for f, a, b in zip((cosine, sine), names_after, before, strict=True)
         ),
     ]

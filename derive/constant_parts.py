@@ -18,6 +18,7 @@ from derive.program import (
     PLANE,
     ROUNDING,
     SHORTEST_LINK,
+    Atan2,
     Let,
     Output,
     Program,
@@ -71,14 +72,15 @@ class _Parts:
         )
 
     def _named(self, value: sp.Expr) -> sp.Expr:
-        if value.is_Symbol or (-value).is_Symbol or (1 / value).is_Symbol or not value.is_Add | value.is_Mul | value.is_Pow:
+        has_name = value.is_Symbol or (-value).is_Symbol or (1 / value).is_Symbol
+        if has_name or not isinstance(value, sp.Add | sp.Mul | sp.Pow | Atan2):
             return value
         if value.could_extract_minus_sign():
             return -self._named(-value)
         if value.is_Pow and value.exp < 0 or (value.is_Mul and all(f.as_base_exp()[1] < 0 for f in value.args)):
             return 1 / self._named(1 / value)
         if value not in self.names:
-            self.names[value] = self._fresh(_words(value))
+            self.names[value] = self._fresh(words(value))
         return self.names[value]
 
     def _fresh(self, stem: str) -> sp.Symbol:
@@ -91,23 +93,25 @@ class _Parts:
         return real(proposal)
 
 
-def _words(value: sp.Expr) -> str:
+def words(value: sp.Expr) -> str:
     """An expression in words: `a2_plus_a3`, `a3_by_effective_q3`, `a2_squared`."""
     if value.is_Symbol:
         return str(value.name)
     if value.is_Number:
         return _WORDS.get(value, str(value).replace("/", "_by_"))
     if value.is_Pow and value.exp == 2:
-        return f"{_words(value.base)}_squared"
+        return f"{words(value.base)}_squared"
     if value.is_Add:
-        terms = sorted(value.args, key=lambda t: (t.could_extract_minus_sign(), str(t)))
-        words = [("_minus_" if t.could_extract_minus_sign() else "_plus_") + _words(_without_sign(t)) for t in terms]
-        return "".join(words).removeprefix("_plus_")
+        terms = sorted(value.args, key=lambda t: (t.could_extract_minus_sign(), t.is_Number, str(t)))
+        said = [("_minus_" if t.could_extract_minus_sign() else "_plus_") + words(_without_sign(t)) for t in terms]
+        return "".join(said).removeprefix("_plus_")
     if value.is_Mul:
         above, below = value.as_numer_denom()
         factors = sorted(sp.Mul.make_args(above), key=lambda f: (f.is_Number, str(f)))
-        text = "_times_".join(map(_words, factors))
-        return text if below == 1 else f"{text}_by_{'_by_'.join(_words(f) for f in sp.Mul.make_args(below))}"
+        text = "_times_".join(map(words, factors))
+        return text if below == 1 else f"{text}_by_{'_by_'.join(words(f) for f in sp.Mul.make_args(below))}"
+    if isinstance(value, Atan2):
+        return f"angle_of_{words(value.args[1])}"
     return "constant_part"
 
 

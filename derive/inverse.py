@@ -34,6 +34,7 @@ from derive.parameters import SCALE
 from derive.passes import assemble
 from derive.problem import Problem
 from derive.program import FREE_ANGLE, PLANE, Let, Output, Program, Require, Root, Select, Statement, Status, real
+from derive.shorter import shorter
 from derive.solve import Derivation, solve
 
 POSITION = tuple(real(c) for c in COORDINATE_NAMES)
@@ -157,5 +158,5 @@ def inverse_program(
     draft = assemble(name, body, outputs)
     groups = (POSITION, OFFSET, ROTATION_ENTRIES, tuple(j.reference for j in mechanism.joints))
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))
-    return assemble(name, (*checks, *draft.body), draft.outputs)
+    return shorter(assemble(name, (*checks, *draft.body), draft.outputs))
 

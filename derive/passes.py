@@ -147,6 +147,11 @@ def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Stat
     return tuple(done)
 
 
+def is_read_once(program: Program, name: sp.Symbol) -> bool:
+    """Whether one statement or one output alone reads a name."""
+    return sum(name in reads(s) for s in program.body) + sum(name in symbols_of(o.value) for o in program.outputs) == 1
+
+
 def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
     """The programs without the Lets that depend on constants alone, and these Lets, each value under one name.
 

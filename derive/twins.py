@@ -14,18 +14,23 @@ from dataclasses import dataclass, field, replace
 
 import sympy as sp
 
-from derive.program import DEGREE, Atan2, Let, NearestPeriod, Program, Select, Statement, real, symbols_of
+from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Select, Statement, real, rewritten, symbols_of
+from derive.turnless import turnless
 from derive.verify import verify
 
 
 def with_twins(program: Program) -> Program:
     """The program with values taken from their twins."""
-    finder = _Finder()
-    return verify(replace(program, body=tuple(found for s in program.body for found in finder.seen(s))))
+    finder = _Finder(turnless(program))
+    body = tuple(found for s in program.body for found in finder.seen(s))
+    outputs = tuple(Output(o.name, o.value.xreplace(finder.negatives)) for o in program.outputs)
+    return verify(replace(program, body=body, outputs=outputs))
 
 
 @dataclass
 class _Finder:
+    turnless: frozenset[sp.Symbol]
+    """Angles that may be a turn more or less."""
     values: dict[sp.Expr, sp.Symbol] = field(default_factory=dict)
     """Who has a value."""
     angles: dict[tuple[sp.Expr, ...], sp.Symbol] = field(default_factory=dict)
@@ -35,10 +40,18 @@ class _Finder:
     known: dict[sp.Basic, dict[sp.Basic, sp.Expr]] = field(default_factory=dict)
     """By condition: what a name is there, in terms of its twin."""
 
+    negatives: dict[sp.Basic, sp.Expr] = field(default_factory=dict)
+    """Angles that are the negative of their twins."""
+
     def seen(self, statement: Statement) -> tuple[Statement, ...]:
         """The statement, by its twin where it has one: everywhere, or on the first side of a choice."""
+        statement = rewritten(statement, lambda e: e.xreplace(self.negatives))
         if not isinstance(statement, Let):
             return (statement,)
+        mirrored = self._mirrored(statement.value) if statement.name in self.turnless else None
+        if mirrored is not None:
+            self.negatives[statement.name] = mirrored
+            return ()
         twin = self._turned(statement.value)
         if twin is not None:
             return (replace(statement, value=twin),)
@@ -63,6 +76,11 @@ class _Finder:
         direction = real(f"direction_of_{let.name.name}")
         chosen = Let(direction, Select(condition, turned.args[0], let.value.args[0]))
         return chosen, replace(let, value=NearestPeriod(direction, let.value.args[1]))
+
+    def _mirrored(self, value: sp.Expr) -> sp.Expr | None:
+        """The angle of a mirrored direction, up to a turn."""
+        other = self.values.get(Atan2(-value.args[0], value.args[1])) if isinstance(value, Atan2) else None
+        return None if other is None else -other
 
     def _turned(self, value: sp.Expr) -> sp.Expr | None:
         """An angle by that of the mirrored or of the opposite direction."""

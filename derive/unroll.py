@@ -65,6 +65,16 @@ def suffixed(name: str, signs: Sequence[Sign], choice: Choice) -> str:
     return "_".join([name, *(s.words[0] if value > 0 else s.words[1] for s, value in zip(signs, choice, strict=True))])
 
 
+def without_words(name: str, signs: Sequence[Sign]) -> tuple[str, tuple[str, ...]]:
+    """A name without the words of signs behind it, and these words."""
+    found: list[str] = []
+    for sign in reversed(signs):
+        word = next((w for w in sign.words if name.endswith(f"_{w}")), None)
+        if word is not None:
+            name, found = name.removesuffix(f"_{word}"), [word, *found]
+    return name, tuple(found)
+
+
 def is_straight(program: Program) -> bool:
     """Whether a program can be unrolled: one that iterates takes longer on some branches, and a shared one has its names."""
     return not any(isinstance(s, Iterate | Call) for s in program.body)
@@ -78,7 +88,7 @@ def unroll(program: Program, signs: Sequence[Sign]) -> Program:
             unroller.add(statement)
     refusals = unroller.refusals(program.requires())
     outputs = []
-    for choice in choices(len(signs)):
+    for choice in sorted(choices(len(signs)), reverse=True):  # one branch after the other: what two share is nearest to both
         outputs.append(Output(suffixed(REFUSAL, signs, choice), refusals[choice]))
         values = unroller.values(choice)
         outputs += [Output(suffixed(o.name, signs, choice), o.value.xreplace(values)) for o in program.outputs]
@@ -120,6 +130,8 @@ class _Unroller:
     _names: dict[tuple[sp.Symbol, Choice], sp.Expr] = field(default_factory=dict)
     """What stands for a name where the signs of its support have these values."""
     _known: dict[sp.Expr, sp.Symbol] = field(default_factory=dict)
+    _values_of: dict[sp.Basic, sp.Expr] = field(default_factory=dict)
+    """What the new names are bound to."""
 
     def __post_init__(self) -> None:
         for index, sign in enumerate(self.signs):
@@ -132,9 +144,8 @@ class _Unroller:
         if isinstance(statement, Iterate | Call):
             raise BrokenProgram("what iterates or is shared is not unrolled")
         support = self._union(reads(statement))
-        for choice in choices(len(support)):
-            values = self._values(support, choice)
-            changed = rewritten(statement, lambda e, values=values: e.xreplace(values))  # type: ignore[misc]
+        variants = [(choice, self._at(statement, support, choice)) for choice in choices(len(support))]
+        for choice, changed in sorted(variants, key=lambda variant: _is_negative(variant[1])):
             if isinstance(changed, Let):
                 self._names[changed.name, choice] = self._bound(changed, support, choice)
                 continue
@@ -142,6 +153,11 @@ class _Unroller:
             self.body.append(renamed(changed, lambda n, names=names: names[n]))  # type: ignore[misc]
             self._names |= {(name, choice): new for name, new in names.items()}
         self._support |= dict.fromkeys(binds(statement), support)
+
+    def _at(self, statement: Statement, support: tuple[int, ...], choice: Choice) -> Statement:
+        """The statement where its signs have values."""
+        values = self._values(support, choice)
+        return rewritten(statement, lambda e: e.xreplace(values))
 
     def values(self, choice: Choice) -> dict[sp.Basic, sp.Basic]:
         """What stands for every name where all signs have values."""
@@ -180,14 +196,23 @@ class _Unroller:
         value = self._without_repetition(let, support, choice)
         if value.is_Symbol or value.is_Number or (-value).is_Symbol:
             return value
-        if value in self._known:
-            return self._known[value]
-        if -value in self._known:
-            return -self._known[-value]
+        key = self._written_out(value)
+        if key in self._known:
+            return self._known[key]
+        if -key in self._known:
+            return -self._known[-key]
         name = self._fresh(let.name.name, support, choice)
-        self._known[value] = name
+        self._known[key] = name
+        self._values_of[name] = value
         self.body.append(Let(name, value, let.note))
         return name
+
+    def _written_out(self, value: sp.Expr) -> sp.Expr:
+        """A sum of squares of what is bound, in terms of that: those of two branches can be equal though no square is."""
+        terms = sp.Add.make_args(value)
+        if len(terms) > 1 and all(t.is_Pow and t.exp == 2 and t.base in self._values_of for t in terms):
+            return sp.expand(value.xreplace(self._values_of))
+        return value
 
     def _without_repetition(self, let: Let, support: tuple[int, ...], choice: Choice) -> sp.Expr:
         """The value with a name for what stands in it twice, below a root and elsewhere."""
@@ -221,6 +246,11 @@ class _Unroller:
             proposal = f"{stem}_{number}"
         self.taken.add(proposal)
         return real(proposal)
+
+
+def _is_negative(statement: Statement) -> bool:
+    """Whether a value has a minus in front: its opposite is named rather, so that it is taken without one."""
+    return isinstance(statement, Let) and bool(statement.value.could_extract_minus_sign())
 
 
 @dataclass(frozen=True)

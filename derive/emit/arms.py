@@ -54,7 +54,28 @@ Item = Statement | Arms
 
 def in_arms(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
     """The statements of a program, choices that share a condition gathered with what they alone need."""
-    return _sunk(_in_arms(body, wanted), {s for value in wanted for s in _symbols(value)})
+    later = {s for value in wanted for s in _symbols(value)}
+    return _spared(_sunk(_in_arms(body, wanted), later), later)
+
+
+def _spared(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:
+    """Without what is bound on a first side for the second sides of later choices that the same condition decides."""
+    found: list[Item] = []
+    for place, item in enumerate(items):
+        if isinstance(item, Arms):
+            needed = later.union(*(_reads_where(other, item.condition) for other in items[place + 1 :]))
+            read = needed.union(*(_reads_somewhere(inner) for inner in item.holds))
+            kept = tuple(i for i in item.holds if not isinstance(i, Let) or i.name in read)
+            item = replace(item, holds=kept)
+        found.append(item)
+    return tuple(found)
+
+
+def _reads_where(item: Item, condition: sp.Basic) -> set[sp.Symbol]:
+    """What a statement reads where a condition holds."""
+    if isinstance(item, Arms) and item.condition == condition:
+        return set(_symbols(condition)).union(*map(_reads_somewhere, item.holds))
+    return _reads_somewhere(item)
 
 
 def _sunk(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:
@@ -239,6 +260,7 @@ class _Choice:
         flat = tuple(lets[place] for place in sorted(gathered))
         arms = Arms(self.condition, self._arm(0, results), self._arm(1, results), results, flat)
         first = self.stretch.upstream(gathered | self._deciders()) - gathered
+        first |= set(range(min(self.members))) - gathered - self.stretch.downstream(gathered)  # what was first stays first
         after = [let for place, let in enumerate(lets) if place not in gathered and place not in first]
         read_after = later.union(*(_symbols(let.value) for let in after))
         read_inside = _symbols(self.condition).union(*(_symbols(let.value) for let in flat))

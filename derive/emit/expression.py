@@ -14,7 +14,7 @@ from sympy.core.relational import Relational
 
 from derive.program import DEGREE, Atan2, NearestOnArc, NearestPeriod, Root, Select
 
-_OR, _AND, _COMPARE, _SUM, _PRODUCT, _UNARY, ATOM = range(7)
+_OR, _AND, COMPARE, _SUM, PRODUCT, _UNARY, ATOM = range(7)
 
 FUNCTION_KEYS: dict[type[sp.Basic], str] = {
     sp.sin: "sin",
@@ -68,9 +68,9 @@ class ExpressionPrinter(ABC):
         if isinstance(node, sp.Mul | sp.Pow):
             return self._product(node)
         if isinstance(node, Relational):
-            return f"{self._text(node.lhs, _SUM)} {node.rel_op} {self._text(node.rhs, _SUM)}", _COMPARE
+            return f"{self._text(node.lhs, _SUM)} {node.rel_op} {self._text(node.rhs, _SUM)}", COMPARE
         if isinstance(node, sp.And):
-            return self._joined(node, "and", _COMPARE), _AND
+            return self._joined(node, "and", COMPARE), _AND
         if isinstance(node, sp.Or):
             return self._joined(node, "or", _AND), _OR
         key = FUNCTION_KEYS[type(node)]
@@ -91,9 +91,9 @@ class ExpressionPrinter(ABC):
         text = self._text(terms[0], _SUM)
         for term in terms[1:]:
             if _is_negative(term):
-                text += f" - {self._text(-term, _PRODUCT)}"
+                text += f" - {self._text(-term, PRODUCT)}"
             else:
-                text += f" + {self._text(term, _PRODUCT)}"
+                text += f" + {self._text(term, PRODUCT)}"
         return text
 
     def _product(self, node: sp.Expr) -> tuple[str, int]:
@@ -113,7 +113,7 @@ class ExpressionPrinter(ABC):
         ]
         if bottom:
             text += "/" + (bottom[0] if len(bottom) == 1 else f"({'*'.join(bottom)})")
-        return (f"-{text}", _SUM) if coefficient < 0 else (text, _PRODUCT)
+        return (f"-{text}", _SUM) if coefficient < 0 else (text, PRODUCT)
 
 
 def _is_negative(term: sp.Expr) -> bool:

@@ -8,8 +8,8 @@ from keyword import iskeyword
 
 import sympy as sp
 
-from derive.emit.expression import ATOM, FUNCTION_KEYS, ExpressionPrinter
-from derive.program import Root, Select
+from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, PRODUCT, ExpressionPrinter
+from derive.program import DEGREE, Root, Select
 
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
@@ -38,7 +38,7 @@ def literal(value: float) -> str:
 def primitives_in(lines: Iterable[str]) -> list[str]:
     """The primitives and constants that statements use, in alphabetical order."""
     words = {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", line.partition("#")[0])}
-    return sorted(words & {*FUNCTION_KEYS.values(), "DEGREE", "arctan2", "solve", "sqrt"} - {"abs", "select"})
+    return sorted(words & {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "arctan2", "solve", "sqrt"} - {"abs", "select"})
 
 
 def array_helpers_in(lines: Iterable[str], helpers: Iterable[str]) -> set[str]:
@@ -54,18 +54,24 @@ def is_sum_of_squares(value: sp.Expr) -> bool:
 class ScalarPrinter(ExpressionPrinter):
     """Plain numbers: a choice is a conditional expression, and only one arm of it is evaluated.
 
-    What is short is written out instead of called, because a call takes longer: the root of a sum of squares or of a name.
+    What is short is written out instead of called, because a call takes longer: the root of a sum of squares or of a name, and
+    the size of a name.
     Of an angle, zeros lose their signs by adding 0.
     """
 
     def __init__(self, *, modulo_turns: bool = False, is_trusted: bool = False) -> None:
         """modulo_turns: whether -180 degrees are as good as 180, so that the sign of a zero sine does not matter.
 
-        is_trusted: whether there is a direction at all, so that not both are zero.
+        is_trusted: whether there is a direction at all, so that not both are zero; and quotients are products, which are faster.
         """
         self.modulo_turns, self.is_trusted = modulo_turns, is_trusted
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if self.is_trusted and node.is_Mul and 1 / DEGREE in node.args:
+            return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
+        if isinstance(node, sp.LessThan) and isinstance(node.lhs, sp.Abs) and node.lhs.args[0].is_Symbol and node.rhs.is_Number:
+            bound, value = self.print(node.rhs), self.print(node.lhs.args[0])
+            return f"-{bound} <= {value} <= {bound}", COMPARE
         if isinstance(node, Select) and isinstance(node.args[1], Root) and node.args[0] == sp.Gt(node.args[1].args[0], 0):
             condition, (radicand,), otherwise = node.args[0], node.args[1].args, node.args[2]
             return f"(sqrt({self.print(radicand)}) if {self.print(condition)} else {self.print(otherwise)})", ATOM

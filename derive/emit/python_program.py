@@ -94,9 +94,14 @@ def scalar_body(method: Method, owner: str = "self._constants", refusals: Refusa
 
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """The statements of a program on plain numbers."""
-    lines: list[str] = []
     needed = [e for s in program.body if isinstance(s, Require) for e in refusals.reads(s)]
-    for item, same in grouped(in_arms(program.body, [*(o.value for o in program.outputs), *needed])):
+    return item_lines(in_arms(program.body, [*(o.value for o in program.outputs), *needed]), refusals, printer)
+
+
+def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
+    """Statements on plain numbers, choices with their sides."""
+    lines: list[str] = []
+    for item, same in grouped(items):
         if isinstance(item, Require):
             lines += [*_note(item.note), *refusals.lines(same)]
         elif isinstance(item, Iterate):

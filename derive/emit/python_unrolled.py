@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.angles_first import angles_first
+from derive.common_parts import common_parts
 from derive.constant_parts import constant_parts
+from derive.emit.arms import in_arms
 from derive.emit.python_layout import fold
 from derive.emit.python_methods import POSITION, ROTATION, branch
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, primitives_in, spelled
@@ -17,11 +20,14 @@ from derive.emit.python_program import (
     Refusals,
     array_statements,
     constants_of,
+    item_lines,
     let_lines,
     statement_lines,
     unpacked,
 )
+from derive.emit.reused_names import reused_names
 from derive.kinematics import Kinematics
+from derive.opposites import without_minus
 from derive.program import Let, Program, Status, real, symbols_of
 from derive.twins import with_twins
 from derive.unroll import REFUSAL, Sign, choices, is_straight, principal, specialised, suffixed, unroll, with_limits
@@ -63,12 +69,14 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
 
 def every_branch(kin: Kinematics) -> Program:
     """All branches, periods nearest to the reference, limits tested."""
-    return with_twins(unroll(_nearest(kin, with_limits(kin.branch, kin.limits)), signs(kin)))
+    program = with_twins(unroll(_nearest(kin, with_limits(kin.branch, kin.limits)), signs(kin)))
+    return common_parts(program, signs(kin), _constants(kin))
 
 
 def branches(kin: Kinematics) -> Program:
     """All branches in principal values."""
-    return principal(with_twins(unroll(_nearest(kin, kin.branch), signs(kin))))
+    program = principal(with_twins(unroll(_nearest(kin, kin.branch), signs(kin))))
+    return common_parts(program, signs(kin), _constants(kin))
 
 
 def array_method(kin: Kinematics) -> Method:
@@ -90,8 +98,13 @@ def array_lines(kin: Kinematics, method: Method) -> list[str]:
 
 
 def _nearest(kin: Kinematics, program: Program) -> Program:
-    """No turn is commanded."""
-    return specialised(program, {j.turn: sp.Integer(0) for j in kin.period_joints})
+    """No turn is commanded; on plain numbers a sine costs little."""
+    given = specialised(program, {j.turn: sp.Integer(0) for j in kin.period_joints})
+    return without_minus(angles_first(given, _constants(kin)))
+
+
+def _constants(kin: Kinematics) -> frozenset[str]:
+    return frozenset(o.name for o in kin.setup.outputs)
 
 
 def unrolled(kin: Kinematics) -> Unrolled:
@@ -139,14 +152,23 @@ def _function(method: Method, body: list[str]) -> Function:
 def _slots(kin: Kinematics, method: Method) -> list[str]:
     """The body of the checked function."""
     count = 2 ** len(kin.branches)
-    lines = statement_lines(method.program, Refusals(lambda status: f"{count}*({list(Status).index(status)}.0,)"), _SCALAR)
-    return [*lines, *_returned(kin, method.program, lambda refusal: refusal)]
+    refusals = Refusals(lambda status: f"{count}*({list(Status).index(status)}.0,)")
+    return _every(kin, method.program, refusals, _SCALAR, lambda refusal: refusal)
 
 
 def _directions(kin: Kinematics, method: Method) -> list[str]:
     count = 2 ** len(kin.branches)
-    lines = statement_lines(method.program, Refusals(lambda _: f"{count}*(None,)"), _DIRECTIONS)
-    return [*lines, *_returned(kin, method.program, lambda _: "None")]
+    return _every(kin, method.program, Refusals(lambda _: f"{count}*(None,)"), _DIRECTIONS, lambda _: "None")
+
+
+def _every(
+    kin: Kinematics, program: Program, refusals: Refusals, printer: ScalarPrinter, refused: Callable[[str], str]
+) -> list[str]:
+    """Statements one branch after the other, and all slots."""
+    wanted = [o.value for o in program.outputs]
+    items, names = reused_names(in_arms(program.body, wanted), wanted, signs(kin))
+    values = {o.name: o.value.xreplace(dict(names)) for o in program.outputs}
+    return [*item_lines(items, refusals, printer), *_returned(kin, values, refused)]
 
 
 def _direction(method: Method) -> list[str]:
@@ -155,9 +177,8 @@ def _direction(method: Method) -> list[str]:
     return [*lines, *fold(f"return {_tuple(values)}")]
 
 
-def _returned(kin: Kinematics, program: Program, refused: Callable[[str], str]) -> list[str]:
+def _returned(kin: Kinematics, values: Mapping[str, sp.Expr], refused: Callable[[str], str]) -> list[str]:
     """The axes of every slot, or what stands for its refusal."""
-    values = {o.name: o.value for o in program.outputs}
     lines = ["return ("]
     for choice in choices(len(kin.branches)):
         refusal = values[suffixed(REFUSAL, signs(kin), choice)]

@@ -58,7 +58,8 @@ def test_a_statement_stands_once_for_every_assignment_of_the_signs_it_depends_on
         "c_right_up": Root(real("b_right")) - A,
         "c_left_up": Root(real("b_left")) - A,
     }
-    assert [o.name for o in found.outputs if o.name.startswith("o")] == ["o_right_down", "o_left_down", "o_right_up", "o_left_up"]
+    one_after_the_other = ["o_right_down", "o_right_up", "o_left_down", "o_left_up"]
+    assert [o.name for o in found.outputs if o.name.startswith("o")] == one_after_the_other
 
 
 def test_a_negative_is_not_computed_again() -> None:

@@ -81,7 +81,7 @@ REFUSED = {
 }
 
 FAULTS = {
-    "a division by zero": Break(_BRANCH, "headingAlong/headingDivisor", "headingAlong/0.0", "division by zero"),
+    "a division by zero": Break(_BRANCH, "angleA1/DEGREE", "angleA1/0.0", "division by zero"),
     "a root of a negative": Break(_BRANCH, "reach := Softkin_Root(", "reach := SQRT(-1.0E12 + ", "SQRT of a negative"),
     "a product that overflows": Break(_FORWARD, "cosA1 := COS(a1)", "cosA1 := 1.0E200*COS(a1)*1.0E200", "not finite"),
     "an unused axis that is read": Break(_FORWARD, "a.a2 - offsetA3", "a.a2 - a.a4", "not finite"),
@@ -90,7 +90,7 @@ FAULTS = {
 }
 
 WRONG = {
-    "CartesianToAxes: a sign": Break(_BRANCH, "cosA1*cosA2 - sinA1*sinA2", "cosA1*cosA2 + sinA1*sinA2"),
+    "CartesianToAxes: a sign": Break(_BRANCH, "f.vT.dY - armAcrossA1*f.vT.dX", "f.vT.dY + armAcrossA1*f.vT.dX"),
     "AxesToCartesian: a sign": Break(_FORWARD, "z := a3 - ", "z := a3 + "),
     "CartesianToAxes: an offset": Break(_BRANCH, "axisA3 := a3 + offsetA3;", "axisA3 := a3;"),
     "CartesianToAxes: two axes exchanged": Break(_BRANCH, "a.a0 := axisA1;\na.a1 := axisA2;", "a.a0 := axisA2;\na.a1 := axisA1;"),

@@ -51,7 +51,7 @@ def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
             configuration = (byte,) * robot.BRANCHES + (0,) * len(robot.PERIOD_AXES)
             found, statuses = robot.inverse_batch(*frames, configuration, references)
             assert (statuses == Status.OK).all()
-            assert np.abs(found - nearest).max() == 0.0
+            assert np.abs(found - nearest).max() < 1e-11  # but for rounding: what branches share is computed once for all
             for row in range(40):
                 frame = frames[0][row], frames[1][row]
                 assert np.abs(np.subtract(robot.inverse(frame, configuration, references[row]), found[row])).max() < 1e-10

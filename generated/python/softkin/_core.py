@@ -192,14 +192,16 @@ class Mechanism(ABC):
         The input is trusted: plain tuples of floats, with a rotation that is one. Axes are one of their values, a turn
         more or less is not chosen, and limits are not tested.
         """
-        return self._directions(frame, (0.0,) * len(self.AXES) if reference is None else reference)
+        return tuple([self.branch(frame, signs, reference) for _, signs in slots((AUTOMATIC,) * self.BRANCHES)])
 
     def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops, with input and axes as `branches` has them.
 
         signs: 1.0 for byte 1 of a branch, -1.0 for byte 2.
         """
-        return self._direction(frame, signs, (0.0,) * len(self.AXES) if reference is None else reference)
+        near = (0.0,) * len(self.AXES) if reference is None else reference
+        axes = self._branch(*frame, signs, (0.0,) * len(self.PERIOD_AXES), near)
+        return None if isinstance(axes, Status) else axes
 
     def diagnose(
         self, frame: FrameLike, configuration: Iterable[int] | None = None, reference: Numbers | None = None
@@ -301,13 +303,6 @@ class Mechanism(ABC):
             status = axes if isinstance(axes, Status) else self._limit_status(axes)
             found.append(axes if status is Status.OK and not isinstance(axes, Status) else float(status))
         return tuple(found)
-
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return tuple([self._direction(frame, signs, reference) for _, signs in slots((AUTOMATIC,) * self.BRANCHES)])
-
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        axes = self._branch(*frame, signs, (0.0,) * len(self.PERIOD_AXES), reference)
-        return None if isinstance(axes, Status) else axes
 
     def _solution(self, slot: Slot, found: Reals | float) -> Solution:
         """A slot with its configuration."""

@@ -8,11 +8,13 @@ from math import atan2 as arctan2
 from math import cos, floor, pi, sin, sqrt
 
 __all__ = [
-    "DEGREE", "arctan2", "atan2", "cos", "nearest_on_arc", "nearest_period", "root", "sin", "solve", "sqrt",
+    "DEGREE", "RADIAN", "arctan2", "atan2", "cos", "nearest_on_arc", "nearest_period", "root", "sin", "solve", "sqrt",
 ]  # fmt: skip
 
 DEGREE = pi / 180.0
 """One degree in radians."""
+RADIAN = 180.0 / pi
+"""One radian in degrees."""
 _TURN = 2.0 * pi
 _HALF_AND_EDGE = 180.0 + 1e-9
 

@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 168 additions, 184 multiplications, 43 divisions, 1 square roots, 16 sines
-    inverse: 79334 additions, 160330 multiplications, 19830 divisions, 7205 square roots, 14412 sines
-    inverse, all 16 branches open: 1269329 additions, 2565280 multiplications, 317280 divisions, 115280 square roots, 230592 sines
+    inverse: 79332 additions, 160328 multiplications, 19830 divisions, 7205 square roots, 14412 sines
+    inverse, all 16 branches open: 1269297 additions, 2565248 multiplications, 317280 divisions, 115280 square roots, 230592 sines
     search along the joint, from its reference outwards: at most 1800 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse searches along A6, from the reference
@@ -60,6 +60,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
 
 
 class Constants(NamedTuple):
@@ -485,11 +486,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         searched = k.searched
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9 and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9
-            and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9 and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
-            and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9 and -1e9 <= axis_a1 <= 1e9
+            and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9 and -1e9 <= axis_a1 <= 1e9
+            and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -528,6 +530,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
         y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
         y = y_at_q6 + d6*r23_at_q5
+        r33_at_q4 = cos_q23*cos_q4
+        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2*cos_q2
+        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
+        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
+        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
+        z = z_at_q6 + d6*r33_at_q5
         r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
         q6 = DEGREE*(axis_a6 - offset_a6)
         sin_q6 = sin(q6)
@@ -537,6 +547,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
         r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
         r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
+        r32_at_q4 = cos_q23*sin_q4
+        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
+        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
         # the point that the last joints turn about
         wrist_x_tried = x + j6_offset_x*r12_at_q6*sin_q6 - d6*r13_at_q5 - j6_offset_x*r11_at_q6*cos_q6
         wrist_y_tried = y + j6_offset_x*r22_at_q6*sin_q6 - d6*r23_at_q5 - j6_offset_x*r21_at_q6*cos_q6
@@ -557,17 +570,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_closed
             branch_elbow = margin_elbow_closed
             branch_wrist = cos_q5
-        r33_at_q4 = cos_q23*cos_q4
-        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
-        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
-        z = z_at_q6 + d6*r33_at_q5
-        r32_at_q4 = cos_q23*sin_q4
-        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
-        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
         # of the Jacobian, its positions in lengths of the machine
         (determinant,) = solve(
             (
@@ -626,8 +628,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a6 = k.offset_a6
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -717,10 +719,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         swing_scale_q3_closed = k.swing_scale_q3_closed
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9 and abs(ref_a6) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
+            and -1e9 <= ref_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -839,10 +842,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             indicator_elbow_tried = (a3*sin_q3_tried + d4*cos_q3_tried)/machine_scale
             residual_tried = (reach_tried*reach_tried - a2*a2)/(machine_scale*machine_scale)
             scanning = 0.0 if closing > 0.5 else 1.0  # or a root is being closed in
-            settled_ = 1.0 if (scanning <= 0.5) and ((closing >= 100.0) or (abs(residual_tried) <= 1e-14)) else 0.0
+            settled_ = 1.0 if (scanning <= 0.5) and ((closing >= 100.0) or (-1e-14 <= residual_tried <= 1e-14)) else 0.0
             root_ = (
                 1.0
-                if (abs(residual_tried) <= 1e-12) and (
+                if (-1e-12 <= residual_tried <= 1e-12) and (
                     indicator_elbow_tried*sigma_elbow >= -1e-9
                 ) and ((settled_ > 0.5) or (touching > 0.5))
                 else 0.0
@@ -882,7 +885,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             next_touching = (
                 1.0
                 if (inner <= 0.0) and (radius > 0.0) and (scanning > 0.5) and (crosses < 0.5) and (side < 0.0) and (simple < 0.5) and (touching < 0.5) and (
-                    abs(behind) <= 1e-12
+                    -1e-12 <= behind <= 1e-12
                 )
                 else 0.0
             )
@@ -952,15 +955,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_q6 = cos_q6_tried
             sin_q6 = sin_q6_tried
         else:
+            cos_q1 = cos_q1_closed
+            sin_q1 = sin_q1_closed
+            sin_swing_q3_closed = (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
             cos_swing_q3_closed = (
                 (reach_closed*reach_closed - a2*a2 - effective_q3_closed*effective_q3_closed)/swing_scale_q3_closed
             )
-            sin_swing_q3_closed = (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
-            cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
-            sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
             if reach_closed > 1e-11*machine_scale:
-                arm_along_q2_closed = a3*sin_q3_closed + d4*cos_q3_closed
-                arm_across_q2_closed = a2 + a3*cos_q3_closed - d4*sin_q3_closed
+                arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed
+                arm_across_q2_closed = a2 + effective_q3_closed*cos_swing_q3_closed
                 # q2: linear pair in the x_from_q1 and z_from_q1 equations
                 along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
                 across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
@@ -974,6 +977,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else:
                 cos_q2_closed = cos(free_a2)  # its reference where it is free
                 sin_q2_closed = sin(free_a2)
+            cos_q2 = cos_q2_closed
+            sin_q2 = sin_q2_closed
+            cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
+            cos_q3 = cos_q3_closed
+            sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
+            sin_q3 = sin_q3_closed
             r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
             sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
             cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
@@ -990,12 +999,6 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 free_a4 = (ref_a4 - offset_a4)*DEGREE
                 cos_q4_closed = cos(free_a4)  # its reference where it is free
                 sin_q4_closed = sin(free_a4)
-            cos_q1 = cos_q1_closed
-            sin_q1 = sin_q1_closed
-            cos_q2 = cos_q2_closed
-            sin_q2 = sin_q2_closed
-            cos_q3 = cos_q3_closed
-            sin_q3 = sin_q3_closed
             cos_q4 = cos_q4_closed
             sin_q4 = sin_q4_closed
             q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
@@ -1099,8 +1102,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a5 = k.offset_a5
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -1202,8 +1205,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         offset_a5 = k.offset_a5
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)

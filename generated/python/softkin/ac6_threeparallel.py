@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 172 additions, 169 multiplications, 39 divisions, 10 square roots, 18 sines
-    inverse, all 8 branches open: 1369 additions, 1352 multiplications, 312 divisions, 80 square roots, 144 sines
+    inverse: 168 additions, 156 multiplications, 37 divisions, 9 square roots, 18 sines
+    inverse, all 8 branches open: 1337 additions, 1248 multiplications, 296 divisions, 72 square roots, 144 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -52,6 +52,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 6*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -466,8 +469,8 @@ class Ac6ThreeParallel(Mechanism):
         offset_a6 = k.offset_a6
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -544,8 +547,8 @@ class Ac6ThreeParallel(Mechanism):
         offset_a6 = k.offset_a6
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -623,10 +626,11 @@ class Ac6ThreeParallel(Mechanism):
         size_q6_of_q3 = k.size_q6_of_q3
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9 and abs(ref_a6) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
+            and -1e9 <= ref_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -660,6 +664,8 @@ class Ac6ThreeParallel(Mechanism):
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        q6_radius_of_q5 = radius_q6*sigma_wrist
+        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         if radius_q6 > 1e-11:
             along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
@@ -669,94 +675,95 @@ class Ac6ThreeParallel(Mechanism):
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3 = cos(free_a6)  # its reference where it is free
             sin_q6_before_q6_of_q3 = sin(free_a6)
-        q6_radius_of_q5 = radius_q6*sigma_wrist
-        r23_from_q1 = r23*cos_q1 - r13*sin_q1
-        cos_q5 = -r23_from_q1  # q5: linear pair in the q6 radius and r32 equations
-        wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
-        wrist_x_from_q1_along = -d5*r31*cos_q5
         wrist_z = z - d6*r33
-        wrist_y_from_q1_fixed = wrist_z - d1
-        wrist_y_from_q1_along = d5*r32
-        wrist_x_from_q1_across = d5*r32*cos_q5
-        wrist_y_from_q1_across = d5*r31
-        wrist_x_from_q1_here = (
-            wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
-            + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
-        )
-        wrist_y_from_q1_here = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3 = (
-            wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
-        )
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if radius_q6 > 0.01:
             cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
             sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
         else:
-            along_q6_of_q3 = (
-                2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_y_from_q1_across = d5*r31
+            wrist_x_from_q1_here = (
+                wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
             )
-            across_q6_of_q3 = (
-                2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            wrist_y_from_q1_here = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
             )
-            swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-            if swing_q6_of_q3 > 1e-12*size_q6_of_q3:
-                level_q6_of_q3 = (
-                    value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3 = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
-                    )
-                )
-                lowest_q6_of_q3 = (
-                    1.0
-                    if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                        else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
-                    )
-                )
-            else:
-                highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3 = -1.0
-            near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
-            far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
-            centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
-            angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3 + 0.0, cos_q6_before_q6_of_q3 + 0.0)
-            side_q6_of_q3 = (
-                1.0
-                if along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0
-                else -1.0
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3 = (
+                wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
             )
-            moved_q6_of_q3 = nearest_on_arc(
-                angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-                0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
-            )
-            cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-            sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-            # what the motion changes of the pose
-            cost_q6_of_q3 = (
-                sqrt(
-                    (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
-                    + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
-                )
-                *radius_q6
-            )
-            if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+            if abs(value_q6_of_q3) <= size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
                 sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
             else:
-                cos_q6 = cos_q6_after_q6_of_q3  # moved to where the rest can be reached
-                sin_q6 = sin_q6_after_q6_of_q3  # moved to where the rest can be reached
+                along_q6_of_q3 = (
+                    2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+                )
+                across_q6_of_q3 = (
+                    2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+                if swing_q6_of_q3 > 1e-12*size_q6_of_q3:
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
+                    )
+                    # the arc: cosines from its centre
+                    highest_q6_of_q3 = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                    lowest_q6_of_q3 = (
+                        1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                else:
+                    highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3 = -1.0
+                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
+                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
+                centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
+                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3 + 0.0, cos_q6_before_q6_of_q3 + 0.0)
+                side_q6_of_q3 = (
+                    1.0
+                    if along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+                )
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                # what the motion changes of the pose
+                cost_q6_of_q3 = (
+                    sqrt(
+                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
+                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
+                    )
+                    *radius_q6
+                )
+                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
+                    sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+                else:
+                    cos_q6 = cos_q6_after_q6_of_q3  # moved to where the rest can be reached
+                    sin_q6 = sin_q6_after_q6_of_q3  # moved to where the rest can be reached
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
         # what the unknown links must span
@@ -769,47 +776,41 @@ class Ac6ThreeParallel(Mechanism):
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
-        cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        if reach > 1e-11*machine_scale:
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = (
-                sqrt(across_q2*across_q2 + along_q2*along_q2)
-                if across_q2*across_q2 + along_q2*along_q2 > 0.0
-                else 1.0
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(free_a2)  # its reference where it is free
-            sin_q2 = sin(free_a2)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
+        cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
+        if reach > 1e-11*machine_scale:
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2 = cos(free_a2)
+            direction_y_q2 = sin(free_a2)
+        angle_q2 = arctan2(direction_y_q2 + 0.0, direction_x_q2 + 0.0)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + angle_q2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
+        angle_q3 = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
-        sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
-        cos_q4 = r22_from_q1_before_q6*cos_q23 + r21_from_q1_before_q56*sin_q23  # q4: what the sum q234 leaves
-        sin_q4 = r21_from_q1_before_q56*cos_q23 - r22_from_q1_before_q6*sin_q23
+        angle_with_q4 = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4 + 0.0)/DEGREE  # A4: its turn
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)/DEGREE
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
@@ -877,8 +878,8 @@ class Ac6ThreeParallel(Mechanism):
         offset_a5 = k.offset_a5
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -937,8 +938,8 @@ class Ac6ThreeParallel(Mechanism):
         offset_a5 = k.offset_a5
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -1018,11 +1019,13 @@ class Ac6ThreeParallel(Mechanism):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

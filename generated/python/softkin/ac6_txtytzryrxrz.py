@@ -22,8 +22,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 31 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
-    inverse: 70 additions, 58 multiplications, 11 divisions, 1 square roots, 5 sines
-    inverse, all 2 branches open: 139 additions, 116 multiplications, 22 divisions, 2 square roots, 10 sines
+    inverse: 70 additions, 58 multiplications, 9 divisions, 1 square roots, 5 sines
+    inverse, all 2 branches open: 139 additions, 116 multiplications, 18 divisions, 2 square roots, 10 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -45,6 +45,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 6*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -406,8 +409,8 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         offset_a6 = k.offset_a6
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         a1 = axis_a1 - offset_a1
@@ -451,8 +454,8 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         offset_a6 = k.offset_a6
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         a4 = DEGREE*(axis_a4 - offset_a4)
@@ -504,10 +507,10 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         single_a6 = k.single_a6
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9
-            and abs(ref_a6) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a4 <= 1e9
+            and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -520,25 +523,24 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         # a right-handed frame
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return Status.BAD_INPUT
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        if radius_a4 > 1e-11:
-            along_a4 = r33*sigma_wrist  # a4: polar angle in the r33 and r13 equations
-            cos_a4 = along_a4/radius_a4  # its reference where it is free
-            across_a4 = r13*sigma_wrist
-            sin_a4 = across_a4/radius_a4
-        else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_a4 = cos(free_a4)  # its reference where it is free
-            sin_a4 = sin(free_a4)
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        if radius_a4 > 1e-11:
+            # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4 = r33*sigma_wrist
+            direction_y_a4 = r13*sigma_wrist
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            direction_x_a4 = cos(free_a4)  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_y_a4 = sin(free_a4)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4 + 0.0)/DEGREE  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4 + 0.0)/DEGREE  # A4: its turn
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         a4_radius_of_a5 = radius_a4*sigma_wrist
@@ -548,9 +550,8 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
-        r11_from_a4 = r11*cos_a4 - r31*sin_a4
-        r12_from_a4 = r12*cos_a4 - r32*sin_a4
-        sin_a6 = -r12_from_a4
+        r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
+        sin_a6 = direction_y_a4*r32 - direction_x_a4*r12
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
         axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4 + 0.0)/DEGREE  # A6: its turn
@@ -601,8 +602,8 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         offset_a5 = k.offset_a5
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         a5 = DEGREE*(axis_a5 - offset_a5)
@@ -624,8 +625,8 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         offset_a6 = k.offset_a6
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         a3 = axis_a3 - offset_a3
@@ -669,11 +670,13 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 66 additions, 68 multiplications, 8 divisions, 0 square roots, 14 sines
-    inverse: 136 additions, 134 multiplications, 32 divisions, 6 square roots, 12 sines
-    inverse, all 8 branches open: 1081 additions, 1072 multiplications, 256 divisions, 48 square roots, 96 sines
+    inverse: 134 additions, 132 multiplications, 30 divisions, 6 square roots, 12 sines
+    inverse, all 8 branches open: 1065 additions, 1056 multiplications, 240 divisions, 48 square roots, 96 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -52,6 +52,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 6*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -477,8 +480,8 @@ class ArticulatedRobot6DOF(Mechanism):
         offset_a6 = k.offset_a6
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -561,8 +564,8 @@ class ArticulatedRobot6DOF(Mechanism):
         offset_a6 = k.offset_a6
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -649,10 +652,11 @@ class ArticulatedRobot6DOF(Mechanism):
         swing_scale_q3 = k.swing_scale_q3
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9 and abs(ref_a6) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
+            and -1e9 <= ref_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -695,13 +699,16 @@ class ArticulatedRobot6DOF(Mechanism):
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
-        sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
+        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
         if reach > 1e-11*machine_scale:
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+            arm_along_q2 = -effective_q3*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3*cos_swing_q3
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
             across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
@@ -716,6 +723,18 @@ class ArticulatedRobot6DOF(Mechanism):
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             cos_q2 = cos(free_a2)  # its reference where it is free
             sin_q2 = sin(free_a2)
+        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
+        cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
+        sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
+        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
         sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
         cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
@@ -724,37 +743,20 @@ class ArticulatedRobot6DOF(Mechanism):
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         if radius_q4 > 1e-11:
-            along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
-            cos_q4 = along_q4/radius_q4  # its reference where it is free
-            across_q4 = r23_from_q1*sigma_hand
-            sin_q4 = across_q4/radius_q4
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4 = -r13_from_q123*sigma_hand
+            direction_y_q4 = r23_from_q1*sigma_hand
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4 = cos(free_a4)  # its reference where it is free
-            sin_q4 = sin(free_a4)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
-        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
-            axis_a1 = nearest_period(axis_a1, near_a1)
-        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
-        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
-            axis_a2 = nearest_period(axis_a2, near_a2)
-        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
-        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
-            axis_a3 = nearest_period(axis_a3, near_a3)
+            direction_x_q4 = cos(free_a4)  # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_y_q4 = sin(free_a4)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4 + 0.0)/DEGREE  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4 + 0.0)/DEGREE  # A4: its turn
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         q4_radius_of_q5 = radius_q4*sigma_hand
-        r23_from_q123 = -r13_from_q1*cos_q23 - r33*sin_q23
-        cos_q5 = -r23_from_q123  # q5: linear pair in the q4 radius and r23 equations
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
         near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
         axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5 + 0.0)/DEGREE  # A5: its turn
@@ -763,11 +765,11 @@ class ArticulatedRobot6DOF(Mechanism):
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        r21_from_q1234 = -r21_from_q1*cos_q4 - r11_from_q123*sin_q4
+        r21_from_q1234 = -direction_x_q4*r21_from_q1 - direction_y_q4*r11_from_q123
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         r12_from_q1 = r12*cos_q1 + r22*sin_q1
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        r22_from_q1234 = -r22_from_q1*cos_q4 - r12_from_q123*sin_q4
+        r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
         axis_a6 = offset_a6 + arctan2(r21_from_q1234, r22_from_q1234 + 0.0)/DEGREE  # A6: its turn
@@ -830,8 +832,8 @@ class ArticulatedRobot6DOF(Mechanism):
         offset_a5 = k.offset_a5
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -894,8 +896,8 @@ class ArticulatedRobot6DOF(Mechanism):
         offset_a5 = k.offset_a5
         # numbers of reasonable size
         if not (
-            abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
-            and abs(axis_a5) <= 1e9 and abs(axis_a6) <= 1e9
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+            and -1e9 <= axis_a5 <= 1e9 and -1e9 <= axis_a6 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -979,11 +981,13 @@ class ArticulatedRobot6DOF(Mechanism):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -17,7 +17,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 11 additions, 7 multiplications, 1 divisions, 0 square roots, 4 sines
-    inverse: 26 additions, 25 multiplications, 11 divisions, 2 square roots, 6 sines
+    inverse: 26 additions, 23 multiplications, 7 divisions, 2 square roots, 6 sines
 
 On the vertical the azimuth is the reference's; at the origin the polar angle is too.
 
@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 3*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -255,7 +258,7 @@ class Crane(OffsetKinematics):
         offset_r = k.offset_r
         offset_theta = k.offset_theta
         # numbers of reasonable size
-        if not (abs(axis_phi) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_theta) <= 1e9):
+        if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
         # R where the machine has no pose
         if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
@@ -282,7 +285,7 @@ class Crane(OffsetKinematics):
         offset_phi = k.offset_phi
         offset_r = k.offset_r
         # numbers of reasonable size
-        if not (abs(axis_phi) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_theta) <= 1e9):
+        if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
         # R where the machine has no pose
         if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
@@ -307,35 +310,38 @@ class Crane(OffsetKinematics):
         offset_theta = k.offset_theta
         single_theta = k.single_theta
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_phi) <= 1e9 and abs(ref_theta) <= 1e9):
+        if not (
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_phi <= 1e9
+            and -1e9 <= ref_theta <= 1e9
+        ):
             return Status.BAD_INPUT
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        axis_r = offset_r + radius_phi
         if radius_theta > 1e-11*machine_scale:
-            cos_theta = x/radius_theta  # its reference where it is free
-            sin_theta = y/radius_theta
+            direction_x_theta = x  # its reference where it is free
+            direction_y_theta = y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            cos_theta = cos(free_theta)  # its reference where it is free
-            sin_theta = sin(free_theta)
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        if radius_phi > 1e-11*machine_scale:
-            cos_phi = z/radius_phi  # its reference where it is free
-            sin_phi = radius_theta/radius_phi
-        else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
-            sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        axis_r = offset_r + radius_phi
+            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_y_theta = sin(free_theta)
         open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
         near_theta = (
             (360.0*turn_theta - 360.0 if turn_theta > 0.0 else 360.0*turn_theta)
             if abs(turn_theta) > 0.0
             else open_theta
         )
-        axis_theta = offset_theta + arctan2(sin_theta, cos_theta + 0.0)/DEGREE  # Theta: its turn
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
-        axis_phi = offset_phi + arctan2(sin_phi + 0.0, cos_phi + 0.0)/DEGREE
+        if radius_phi > 1e-11*machine_scale:
+            direction_x_phi = z  # its reference where it is free
+            direction_y_phi = radius_theta
+        else:
+            free_phi = (ref_phi - offset_phi)*DEGREE
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         return (axis_r, axis_theta, axis_phi)
 
     def _limits(self, axes: Reals) -> Status:
@@ -368,7 +374,7 @@ class Crane(OffsetKinematics):
         offset_r = k.offset_r
         offset_theta = k.offset_theta
         # numbers of reasonable size
-        if not (abs(axis_phi) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_theta) <= 1e9):
+        if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
         # R where the machine has no pose
         if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
@@ -399,7 +405,7 @@ class Crane(OffsetKinematics):
         offset_r = k.offset_r
         offset_theta = k.offset_theta
         # numbers of reasonable size
-        if not (abs(axis_phi) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_theta) <= 1e9):
+        if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
         # R where the machine has no pose
         if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
@@ -441,40 +447,41 @@ class Crane(OffsetKinematics):
         single_theta = k.single_theta
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9 and abs(ref_phi) <= 1e9 and abs(ref_theta) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_phi <= 1e9
+            and -1e9 <= ref_theta <= 1e9
         ):
             return Status.BAD_INPUT
+        flange_z = z - point_z  # the flange behind the point
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
         radius_theta = sqrt(flange_x*flange_x + flange_y*flange_y)  # theta: direction and distance of a point
+        radius_phi = sqrt(flange_z*flange_z + radius_theta*radius_theta)  # phi: direction and distance of a point
+        axis_r = offset_r + radius_phi
         if radius_theta > 1e-11*machine_scale:
-            cos_theta = flange_x/radius_theta  # its reference where it is free
-            sin_theta = flange_y/radius_theta
+            direction_x_theta = flange_x  # its reference where it is free
+            direction_y_theta = flange_y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            cos_theta = cos(free_theta)  # its reference where it is free
-            sin_theta = sin(free_theta)
-        flange_z = z - point_z  # the flange behind the point
-        radius_phi = sqrt(flange_z*flange_z + radius_theta*radius_theta)  # phi: direction and distance of a point
-        if radius_phi > 1e-11*machine_scale:
-            cos_phi = flange_z/radius_phi  # its reference where it is free
-            sin_phi = radius_theta/radius_phi
-        else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
-            sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        axis_r = offset_r + radius_phi
+            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_y_theta = sin(free_theta)
         open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
         near_theta = (
             (360.0*turn_theta - 360.0 if turn_theta > 0.0 else 360.0*turn_theta)
             if abs(turn_theta) > 0.0
             else open_theta
         )
-        axis_theta = offset_theta + arctan2(sin_theta, cos_theta + 0.0)/DEGREE  # Theta: its turn
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
-        axis_phi = offset_phi + arctan2(sin_phi + 0.0, cos_phi + 0.0)/DEGREE
+        if radius_phi > 1e-11*machine_scale:
+            direction_x_phi = flange_z  # its reference where it is free
+            direction_y_phi = radius_theta
+        else:
+            free_phi = (ref_phi - offset_phi)*DEGREE
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         return (axis_r, axis_theta, axis_phi)
 
     def _offset_measures(self, axes: Reals, offset: Vector) -> Reals | Status:
@@ -484,7 +491,7 @@ class Crane(OffsetKinematics):
         offset_phi = k.offset_phi
         offset_r = k.offset_r
         # numbers of reasonable size
-        if not (abs(axis_phi) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_theta) <= 1e9):
+        if not (-1e9 <= axis_phi <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_theta <= 1e9):
             return Status.BAD_INPUT
         # R where the machine has no pose
         if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
@@ -497,11 +504,13 @@ class Crane(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -40,6 +40,9 @@ if TYPE_CHECKING:
     from softkin._array import Programs
 
 
+_ZERO_AXES = 3*(0.0,)
+
+
 class Constants(NamedTuple):
     """What depends on the parameters alone: computed once, read by every program."""
 
@@ -225,7 +228,7 @@ class Gantry3(OffsetKinematics):
         offset_y = k.offset_y
         offset_z = k.offset_z
         # numbers of reasonable size
-        if not (abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         joint_x = axis_x - offset_x
         joint_y = axis_y - offset_y
@@ -236,7 +239,7 @@ class Gantry3(OffsetKinematics):
         """The rotation of the frame."""
         axis_x, axis_y, axis_z = axes
         # numbers of reasonable size
-        if not (abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -250,7 +253,7 @@ class Gantry3(OffsetKinematics):
         offset_y = k.offset_y
         offset_z = k.offset_z
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Status.BAD_INPUT
         axis_x = offset_x + x
         axis_y = offset_y + y
@@ -282,7 +285,7 @@ class Gantry3(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_x, axis_y, axis_z = axes
         # numbers of reasonable size
-        if not (abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ()
 
@@ -290,7 +293,7 @@ class Gantry3(OffsetKinematics):
         """The Jacobian by rows, per radian."""
         axis_x, axis_y, axis_z = axes
         # numbers of reasonable size
-        if not (abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -310,8 +313,8 @@ class Gantry3(OffsetKinematics):
         offset_z = k.offset_z
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
             return Status.BAD_INPUT
         joint_x = x - point_x  # joint_x: affine in the x equation
@@ -326,18 +329,20 @@ class Gantry3(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_x, axis_y, axis_z = axes
         # numbers of reasonable size
-        if not (abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ()
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -60,6 +60,9 @@ if TYPE_CHECKING:
     from softkin._array import StartedPrograms
 
 
+_ZERO_AXES = 6*(0.0,)
+
+
 class Constants(NamedTuple):
     """What depends on the parameters alone: computed once, read by every program."""
 
@@ -1177,8 +1180,8 @@ class Hexapod(IterativeForward):
         within = k.within
         # numbers of reasonable size
         if not (
-            abs(axis_l1) <= 1e9 and abs(axis_l2) <= 1e9 and abs(axis_l3) <= 1e9 and abs(axis_l4) <= 1e9
-            and abs(axis_l5) <= 1e9 and abs(axis_l6) <= 1e9
+            -1e9 <= axis_l1 <= 1e9 and -1e9 <= axis_l2 <= 1e9 and -1e9 <= axis_l3 <= 1e9 and -1e9 <= axis_l4 <= 1e9
+            and -1e9 <= axis_l5 <= 1e9 and -1e9 <= axis_l6 <= 1e9
         ):
             return Status.BAD_INPUT
         l1 = axis_l1 - offset_l1
@@ -1427,9 +1430,10 @@ class Hexapod(IterativeForward):
         ) = start_rotation
         # numbers of reasonable size
         if not (
-            abs(start_r11) <= 1e9 and abs(start_r12) <= 1e9 and abs(start_r13) <= 1e9 and abs(start_r21) <= 1e9
-            and abs(start_r22) <= 1e9 and abs(start_r23) <= 1e9 and abs(start_r31) <= 1e9 and abs(start_r32) <= 1e9
-            and abs(start_r33) <= 1e9 and abs(start_x) <= 1e9 and abs(start_y) <= 1e9 and abs(start_z) <= 1e9
+            -1e9 <= start_r11 <= 1e9 and -1e9 <= start_r12 <= 1e9 and -1e9 <= start_r13 <= 1e9
+            and -1e9 <= start_r21 <= 1e9 and -1e9 <= start_r22 <= 1e9 and -1e9 <= start_r23 <= 1e9
+            and -1e9 <= start_r31 <= 1e9 and -1e9 <= start_r32 <= 1e9 and -1e9 <= start_r33 <= 1e9
+            and -1e9 <= start_x <= 1e9 and -1e9 <= start_y <= 1e9 and -1e9 <= start_z <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -1582,9 +1586,9 @@ class Hexapod(IterativeForward):
         platform_radius = k.platform_radius
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -1957,11 +1961,13 @@ class Hexapod(IterativeForward):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

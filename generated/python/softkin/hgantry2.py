@@ -40,6 +40,9 @@ if TYPE_CHECKING:
     from softkin._array import Programs
 
 
+_ZERO_AXES = 2*(0.0,)
+
+
 class Constants(NamedTuple):
     """What depends on the parameters alone: computed once, read by every program."""
 
@@ -248,7 +251,7 @@ class HGantry2(OffsetKinematics):
         offset_a = k.offset_a
         offset_b = k.offset_b
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         a = axis_a - offset_a
         b = axis_b - offset_b
@@ -260,7 +263,7 @@ class HGantry2(OffsetKinematics):
         """The rotation of the frame."""
         axis_a, axis_b = axes
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -274,7 +277,7 @@ class HGantry2(OffsetKinematics):
         offset_a = k.offset_a
         offset_b = k.offset_b
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Status.BAD_INPUT
         # z: a planar machine has none
         if not (abs(z) <= 1e-6*machine_scale):
@@ -321,7 +324,7 @@ class HGantry2(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_a, axis_b = axes
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         return ()
 
@@ -329,7 +332,7 @@ class HGantry2(OffsetKinematics):
         """The Jacobian by rows, per radian."""
         axis_a, axis_b = axes
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         return ((0.5, -0.5), (-0.5, -0.5))
 
@@ -349,8 +352,8 @@ class HGantry2(OffsetKinematics):
         offset_b = k.offset_b
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
             return Status.BAD_INPUT
         # z: a planar machine has none
@@ -366,18 +369,20 @@ class HGantry2(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a, axis_b = axes
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         return ()
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 16 additions, 15 multiplications, 2 divisions, 0 square roots, 4 sines
-    inverse: 51 additions, 47 multiplications, 10 divisions, 1 square roots, 4 sines
-    inverse, all 2 branches open: 101 additions, 94 multiplications, 20 divisions, 2 square roots, 8 sines
+    inverse: 51 additions, 47 multiplications, 8 divisions, 1 square roots, 4 sines
+    inverse, all 2 branches open: 101 additions, 94 multiplications, 16 divisions, 2 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -44,6 +44,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 5*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -251,7 +254,7 @@ class Kin5Axes(Mechanism):
             raise self._refusal(
                 "tool_length: Where the axes A and B meet to the tool's tip, along the tool", tool_length=tool_length,
             )
-        if not (abs(tool_side) >= 1.0 and abs(tool_side) <= 1.0):
+        if not (abs(tool_side) >= 1.0 and -1.0 <= tool_side <= 1.0):
             raise self._refusal(
                 "tool_side: +1: the tool points along +Z (library 4.16 and later), -1: along -Z (library 4.12)",
                 tool_side=tool_side,
@@ -358,8 +361,8 @@ class Kin5Axes(Mechanism):
         tool_side = k.tool_side
         # numbers of reasonable size
         if not (
-            abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9
-            and abs(axis_z) <= 1e9
+            -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
+            and -1e9 <= axis_z <= 1e9
         ):
             return Status.BAD_INPUT
         joint_x = axis_x - offset_x
@@ -391,8 +394,8 @@ class Kin5Axes(Mechanism):
         tool_side = k.tool_side
         # numbers of reasonable size
         if not (
-            abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9
-            and abs(axis_z) <= 1e9
+            -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
+            and -1e9 <= axis_z <= 1e9
         ):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
@@ -432,9 +435,10 @@ class Kin5Axes(Mechanism):
         tool_side = k.tool_side
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a) <= 1e9 and abs(ref_b) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a <= 1e9
+            and -1e9 <= ref_b <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -447,27 +451,26 @@ class Kin5Axes(Mechanism):
         # a right-handed frame
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return Status.BAD_INPUT
-        r13_of_a = r13/tool_side
-        r23_of_a = r23/tool_side
-        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        if radius_a > 1e-11:
-            along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
-            cos_a = along_a/radius_a  # its reference where it is free
-            across_a = r23_of_a*sigma_roll
-            sin_a = across_a/radius_a
-        else:
-            free_a = (ref_a - offset_a)*DEGREE
-            cos_a = cos(free_a)  # its reference where it is free
-            sin_a = sin(free_a)
         wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length*tool_side
         axis_y = offset_y + wrist_y
         wrist_z = z - r33*tool_length*tool_side
         axis_z = offset_z + wrist_z
+        r13_of_a = r13/tool_side
+        r23_of_a = r23/tool_side
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        if radius_a > 1e-11:
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a = r13_of_a*sigma_roll
+            direction_y_a = r23_of_a*sigma_roll
+        else:
+            free_a = (ref_a - offset_a)*DEGREE
+            direction_x_a = cos(free_a)  # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_y_a = sin(free_a)
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
         near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a
-        axis_a = offset_a + arctan2(sin_a, cos_a + 0.0)/DEGREE  # A: its turn
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0)/DEGREE  # A: its turn
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
         a_radius_of_b = radius_a*sigma_roll
@@ -516,8 +519,8 @@ class Kin5Axes(Mechanism):
         offset_b = k.offset_b
         # numbers of reasonable size
         if not (
-            abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9
-            and abs(axis_z) <= 1e9
+            -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
+            and -1e9 <= axis_z <= 1e9
         ):
             return Status.BAD_INPUT
         b = DEGREE*(axis_b - offset_b)
@@ -537,8 +540,8 @@ class Kin5Axes(Mechanism):
         tool_side = k.tool_side
         # numbers of reasonable size
         if not (
-            abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_x) <= 1e9 and abs(axis_y) <= 1e9
-            and abs(axis_z) <= 1e9
+            -1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9
+            and -1e9 <= axis_z <= 1e9
         ):
             return Status.BAD_INPUT
         joint_y = axis_y - offset_y
@@ -574,11 +577,13 @@ class Kin5Axes(Mechanism):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -16,7 +16,7 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 9 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
-    inverse: 13 additions, 9 multiplications, 5 divisions, 1 square roots, 3 sines
+    inverse: 13 additions, 8 multiplications, 3 divisions, 1 square roots, 3 sines
 
 As CODESYS's own block it has no orientation mode "Axis": a point beside the arm has two radii.
 
@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 3*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -237,7 +240,7 @@ class PolarZ(Mechanism):
         offset_r = k.offset_r
         offset_z = k.offset_z
         # numbers of reasonable size
-        if not (abs(axis_c) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         # R where the machine has no pose
         if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
@@ -258,7 +261,7 @@ class PolarZ(Mechanism):
         offset_c = k.offset_c
         offset_r = k.offset_r
         # numbers of reasonable size
-        if not (abs(axis_c) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         # R where the machine has no pose
         if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
@@ -283,19 +286,19 @@ class PolarZ(Mechanism):
         offset_z = k.offset_z
         single_c = k.single_c
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_c) <= 1e9):
+        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return Status.BAD_INPUT
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         if radius_c > 1e-11*machine_scale:
-            cos_c = x/radius_c  # its reference where it is free
-            sin_c = y/radius_c
+            direction_x_c = x  # its reference where it is free
+            direction_y_c = y
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            cos_c = cos(free_c)  # its reference where it is free
-            sin_c = sin(free_c)
+            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_y_c = sin(free_c)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
-        axis_c = offset_c + arctan2(sin_c, cos_c + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         axis_r = offset_r + radius_c
@@ -331,7 +334,7 @@ class PolarZ(Mechanism):
         offset_c = k.offset_c
         offset_r = k.offset_r
         # numbers of reasonable size
-        if not (abs(axis_c) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         # R where the machine has no pose
         if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
@@ -353,7 +356,7 @@ class PolarZ(Mechanism):
         offset_c = k.offset_c
         offset_r = k.offset_r
         # numbers of reasonable size
-        if not (abs(axis_c) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         # R where the machine has no pose
         if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
@@ -375,7 +378,7 @@ class PolarZ(Mechanism):
         offset_c = k.offset_c
         offset_r = k.offset_r
         # numbers of reasonable size
-        if not (abs(axis_c) <= 1e9 and abs(axis_r) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_c <= 1e9 and -1e9 <= axis_r <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         # R where the machine has no pose
         if not (axis_r - offset_r >= -1e-9 and axis_r - offset_r <= 1000000001.0):
@@ -396,11 +399,13 @@ class PolarZ(Mechanism):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 30 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
-    inverse: 64 additions, 58 multiplications, 21 divisions, 5 square roots, 7 sines
-    inverse, all 4 branches open: 253 additions, 232 multiplications, 84 divisions, 20 square roots, 28 sines
+    inverse: 60 additions, 51 multiplications, 19 divisions, 4 square roots, 7 sines
+    inverse, all 4 branches open: 237 additions, 204 multiplications, 76 divisions, 16 square roots, 28 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -45,6 +45,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 3*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -319,7 +322,7 @@ class PosRRR(OffsetKinematics):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
         sin_q1 = sin(q1)
@@ -365,7 +368,7 @@ class PosRRR(OffsetKinematics):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
         cos_q1 = cos(q1)
@@ -412,8 +415,8 @@ class PosRRR(OffsetKinematics):
         swing_scale_q3_2 = k.swing_scale_q3_2
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Status.BAD_INPUT
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
@@ -443,37 +446,31 @@ class PosRRR(OffsetKinematics):
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
-        sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
-        sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
-        if reach > 1e-11*machine_scale:
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = (
-                sqrt(across_q2*across_q2 + along_q2*along_q2)
-                if across_q2*across_q2 + along_q2*along_q2 > 0.0
-                else 1.0
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(free_a2)  # its reference where it is free
-            sin_q2 = sin(free_a2)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
+        sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
+        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        if reach > 1e-11*machine_scale:
+            arm_along_q2 = -effective_q3_2*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2 = cos(free_a2)
+            direction_y_q2 = sin(free_a2)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
+        cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
+        sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
         axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
@@ -517,7 +514,7 @@ class PosRRR(OffsetKinematics):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
         sin_q1 = sin(q1)
@@ -559,7 +556,7 @@ class PosRRR(OffsetKinematics):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
         cos_q1 = cos(q1)
@@ -608,7 +605,7 @@ class PosRRR(OffsetKinematics):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
         cos_q1 = cos(q1)
@@ -670,8 +667,9 @@ class PosRRR(OffsetKinematics):
         single_a3 = k.single_a3
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9 and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
+            and -1e9 <= ref_a3 <= 1e9
         ):
             return Status.BAD_INPUT
         tool_z = d3 + point_y  # the point seen from the last moving joint
@@ -710,6 +708,11 @@ class PosRRR(OffsetKinematics):
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return Status.UNREACHABLE
+        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
         cos_swing_q3 = (reach*reach - a2*a2 - divisor_q3*divisor_q3)/swing_scale_q3
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         cos_q3 = tool_x*cos_swing_q3/divisor_q3 + tool_y*sin_swing_q3/divisor_q3
@@ -717,28 +720,17 @@ class PosRRR(OffsetKinematics):
         if reach > 1e-11*machine_scale:
             arm_along_q2 = tool_y*cos_q3 + tool_x*sin_q3
             arm_across_q2 = a2 + tool_x*cos_q3 - tool_y*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 - arm_along_q2*wrist_x_from_q1
-            across_q2 = -arm_across_q2*wrist_x_from_q1 - arm_along_q2*wrist_y_from_q1
-            length_q2 = (
-                sqrt(across_q2*across_q2 + along_q2*along_q2)
-                if across_q2*across_q2 + along_q2*along_q2 > 0.0
-                else 1.0
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2 = arm_across_q2*wrist_y_from_q1 - arm_along_q2*wrist_x_from_q1
+            direction_y_q2 = -arm_across_q2*wrist_x_from_q1 - arm_along_q2*wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(free_a2)  # its reference where it is free
-            sin_q2 = sin(free_a2)
-        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
-        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
-            axis_a1 = nearest_period(axis_a1, near_a1)
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2 = cos(free_a2)
+            direction_y_q2 = sin(free_a2)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
@@ -764,8 +756,8 @@ class PosRRR(OffsetKinematics):
         offset_a3 = k.offset_a3
         # numbers of reasonable size
         if not (
-            abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(point_z) <= 1e9 and abs(axis_a1) <= 1e9
-            and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9
+            -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= axis_a1 <= 1e9
+            and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9
         ):
             return Status.BAD_INPUT
         q1 = DEGREE*(axis_a1 - offset_a1)
@@ -804,11 +796,13 @@ class PosRRR(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

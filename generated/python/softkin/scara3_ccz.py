@@ -19,8 +19,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 15 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 41 additions, 32 multiplications, 10 divisions, 3 square roots, 4 sines
-    inverse, all 2 branches open: 81 additions, 64 multiplications, 20 divisions, 6 square roots, 8 sines
+    inverse: 39 additions, 27 multiplications, 8 divisions, 2 square roots, 4 sines
+    inverse, all 2 branches open: 77 additions, 54 multiplications, 16 divisions, 4 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -43,6 +43,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 3*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -268,7 +271,7 @@ class Scara3CCZ(OffsetKinematics):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -289,7 +292,7 @@ class Scara3CCZ(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
@@ -318,7 +321,10 @@ class Scara3CCZ(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
+        if not (
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9
+        ):
             return Status.BAD_INPUT
         reach = sqrt(x*x + y*y)
         # kept as a product
@@ -334,22 +340,16 @@ class Scara3CCZ(OffsetKinematics):
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
+            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
@@ -387,7 +387,7 @@ class Scara3CCZ(OffsetKinematics):
         k = self._constants
         offset_a2 = k.offset_a2
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         sin_a2 = sin(a2)
@@ -402,7 +402,7 @@ class Scara3CCZ(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -429,7 +429,7 @@ class Scara3CCZ(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -468,8 +468,8 @@ class Scara3CCZ(OffsetKinematics):
         single_a2 = k.single_a2
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
         ):
             return Status.BAD_INPUT
         tool_x = link_length_2 + point_x  # the point seen from the last moving joint
@@ -495,22 +495,16 @@ class Scara3CCZ(OffsetKinematics):
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - point_y*sin_a2
             arm_across_a1 = point_y*cos_a2 + tool_x*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
+            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
@@ -532,8 +526,8 @@ class Scara3CCZ(OffsetKinematics):
         offset_a2 = k.offset_a2
         # numbers of reasonable size
         if not (
-            abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9
-            and abs(axis_a3) <= 1e9
+            -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9
+            and -1e9 <= axis_a3 <= 1e9
         ):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
@@ -546,11 +540,13 @@ class Scara3CCZ(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

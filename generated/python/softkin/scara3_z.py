@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 81 additions, 75 multiplications, 15 divisions, 4 square roots, 5 sines
-    inverse, all 2 branches open: 161 additions, 150 multiplications, 30 divisions, 8 square roots, 10 sines
+    inverse: 77 additions, 62 multiplications, 13 divisions, 3 square roots, 5 sines
+    inverse, all 2 branches open: 153 additions, 124 multiplications, 26 divisions, 6 square roots, 10 sines
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
 
@@ -46,6 +46,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 4*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -327,7 +330,9 @@ class Scara3Z(TwistChoice):
         offset_a3 = k.offset_a3
         offset_z = k.offset_z
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
+        ):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -352,7 +357,9 @@ class Scara3Z(TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
+        ):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
@@ -388,10 +395,10 @@ class Scara3Z(TwistChoice):
         single_a3 = k.single_a3
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -429,36 +436,30 @@ class Scara3Z(TwistChoice):
         if reach > 1e-11*machine_scale:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
             arm_across_a1 = arm_length_2*sin_a2
-            along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
+            direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
+        angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
+        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
-        sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
-        cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
-        sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
+        angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        # a3: what the sum a123 leaves; A3: its turn
+        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         axis_z = offset_z + z
@@ -496,7 +497,9 @@ class Scara3Z(TwistChoice):
         k = self._constants
         offset_a2 = k.offset_a2
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
+        ):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         sin_a2 = sin(a2)
@@ -513,7 +516,9 @@ class Scara3Z(TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
+        ):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -552,7 +557,9 @@ class Scara3Z(TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_z <= 1e9
+        ):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -583,8 +590,9 @@ class Scara3Z(TwistChoice):
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         # numbers of reasonable size
         if not (
-            abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -611,11 +619,13 @@ class Scara3Z(TwistChoice):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

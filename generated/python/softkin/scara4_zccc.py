@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 81 additions, 75 multiplications, 15 divisions, 4 square roots, 5 sines
-    inverse, all 2 branches open: 161 additions, 150 multiplications, 30 divisions, 8 square roots, 10 sines
+    inverse: 77 additions, 62 multiplications, 13 divisions, 3 square roots, 5 sines
+    inverse, all 2 branches open: 153 additions, 124 multiplications, 26 divisions, 6 square roots, 10 sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
 
@@ -50,6 +50,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 4*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -331,7 +334,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+        ):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -356,7 +361,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+        ):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         a3 = DEGREE*(axis_a3 - offset_a3)
@@ -392,10 +399,10 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         single_a4 = k.single_a4
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a2) <= 1e9 and abs(ref_a3) <= 1e9
-            and abs(ref_a4) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a2 <= 1e9
+            and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -428,42 +435,36 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return Status.UNREACHABLE
+        axis_a1 = offset_a1 + z
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
         sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
         if reach > 1e-11*machine_scale:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
-            along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
-            across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-            length_a2 = (
-                sqrt(across_a2*across_a2 + along_a2*along_a2)
-                if across_a2*across_a2 + along_a2*along_a2 > 0.0
-                else 1.0
-            )
-            cos_a2 = along_a2/length_a2  # its reference where it is free
-            sin_a2 = across_a2/length_a2
+            # a2: linear pair in the x and y equations; its reference where it is free
+            direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
+            direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_a2 = cos(free_a2)  # its reference where it is free
-            sin_a2 = sin(free_a2)
-        axis_a1 = offset_a1 + z
+            direction_x_a2 = cos(free_a2)  # a2: linear pair in the x and y equations; its reference where it is free
+            direction_y_a2 = sin(free_a2)
+        angle_a2 = arctan2(direction_y_a2 + 0.0, direction_x_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
+        angle_a3 = arctan2(sin_a3 + 0.0, cos_a3 + 0.0)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + angle_a3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
-        cos_a23 = cos_a2*cos_a3 - sin_a2*sin_a3
-        sin_a23 = cos_a2*sin_a3 + cos_a3*sin_a2
-        cos_a4 = cos_a23*cos_heading + sin_a23*sin_heading  # a4: what the sum a234 leaves
-        sin_a4 = cos_a23*sin_heading - cos_heading*sin_a23
+        angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4 + 0.0)/DEGREE  # A4: its turn
+        # a4: what the sum a234 leaves; A4: its turn
+        axis_a4 = offset_a4 + (angle_heading - angle_a2 - angle_a3)/DEGREE
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         return (axis_a1, axis_a2, axis_a3, axis_a4)
@@ -500,7 +501,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         k = self._constants
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+        ):
             return Status.BAD_INPUT
         a3 = DEGREE*(axis_a3 - offset_a3)
         sin_a3 = sin(a3)
@@ -517,7 +520,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+        ):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         sin_a2 = sin(a2)
@@ -556,7 +561,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a3 = k.offset_a3
         offset_a4 = k.offset_a4
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+        ):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         sin_a2 = sin(a2)
@@ -587,8 +594,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         # numbers of reasonable size
         if not (
-            abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -636,8 +644,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         single_a3 = k.single_a3
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9 and abs(ref_a2) <= 1e9 and abs(ref_a3) <= 1e9 and abs(ref_a4) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
+            and -1e9 <= ref_a4 <= 1e9
         ):
             return Status.BAD_INPUT
         free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -661,6 +670,8 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return Status.UNREACHABLE
+        a1 = z - point_z  # a1: affine in the z equation
+        axis_a1 = a1 + offset_a1
         cos_swing_a3 = (reach*reach - divisor_a3*divisor_a3 - link_length_1*link_length_1)/swing_scale_a3
         sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
         cos_a3 = tool_x*cos_swing_a3/divisor_a3 + tool_y*sin_swing_a3/divisor_a3
@@ -668,24 +679,16 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         if reach > 1e-11*machine_scale:
             arm_along_a2 = link_length_1 + tool_x*cos_a3 - tool_y*sin_a3
             arm_across_a2 = tool_y*cos_a3 + tool_x*sin_a3
-            along_a2 = arm_across_a2*y + arm_along_a2*x  # a2: linear pair in the x and y equations
-            across_a2 = arm_along_a2*y - arm_across_a2*x
-            length_a2 = (
-                sqrt(across_a2*across_a2 + along_a2*along_a2)
-                if across_a2*across_a2 + along_a2*along_a2 > 0.0
-                else 1.0
-            )
-            cos_a2 = along_a2/length_a2  # its reference where it is free
-            sin_a2 = across_a2/length_a2
+            # a2: linear pair in the x and y equations; its reference where it is free
+            direction_x_a2 = arm_across_a2*y + arm_along_a2*x
+            direction_y_a2 = arm_along_a2*y - arm_across_a2*x
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_a2 = cos(free_a2)  # its reference where it is free
-            sin_a2 = sin(free_a2)
-        a1 = z - point_z  # a1: affine in the z equation
-        axis_a1 = a1 + offset_a1
+            direction_x_a2 = cos(free_a2)  # a2: linear pair in the x and y equations; its reference where it is free
+            direction_y_a2 = sin(free_a2)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + arctan2(direction_y_a2, direction_x_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
@@ -707,8 +710,8 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         offset_a4 = k.offset_a4
         # numbers of reasonable size
         if not (
-            abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9
-            and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
+            -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9
+            and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
             return Status.BAD_INPUT
         a3 = DEGREE*(axis_a3 - offset_a3)
@@ -726,11 +729,13 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 25 additions, 9 multiplications, 4 divisions, 0 square roots, 7 sines
-    inverse: 81 additions, 76 multiplications, 16 divisions, 4 square roots, 5 sines
-    inverse, all 2 branches open: 161 additions, 152 multiplications, 32 divisions, 8 square roots, 10 sines
+    inverse: 77 additions, 63 multiplications, 12 divisions, 3 square roots, 5 sines
+    inverse, all 2 branches open: 153 additions, 126 multiplications, 24 divisions, 6 square roots, 10 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -45,6 +45,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 4*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -338,7 +341,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         offset_a4 = k.offset_a4
         pitch_zc = k.pitch_zc
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+        ):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -364,7 +369,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a4 = k.offset_a4
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+        ):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         a2 = DEGREE*(axis_a2 - offset_a2)
@@ -400,10 +407,10 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         single_a4 = k.single_a4
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a4) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -436,40 +443,30 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
+            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
+        angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
+        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
-        sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
-        # a4: linear pair in the cosine of the heading and sine of the heading equations
-        cos_a4 = cos_a12*cos_heading + sin_a12*sin_heading
-        sin_a4 = cos_a12*sin_heading - cos_heading*sin_a12
+        angle_heading = arctan2(heading_across + 0.0, heading_along + 0.0)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4 + 0.0)/DEGREE  # A4: its turn
+        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
@@ -509,7 +506,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         k = self._constants
         offset_a2 = k.offset_a2
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+        ):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         sin_a2 = sin(a2)
@@ -525,7 +524,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         pitch_zc = k.pitch_zc
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+        ):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -554,7 +555,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         pitch_zc = k.pitch_zc
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9):
+        if not (
+            -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
+        ):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -576,8 +579,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         # numbers of reasonable size
         if not (
-            abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -625,8 +629,9 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         single_a2 = k.single_a2
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9 and abs(ref_a4) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
+            and -1e9 <= ref_a4 <= 1e9
         ):
             return Status.BAD_INPUT
         free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -656,22 +661,16 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
             arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
+            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
@@ -695,8 +694,8 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         offset_a4 = k.offset_a4
         # numbers of reasonable size
         if not (
-            abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9
-            and abs(axis_a3) <= 1e9 and abs(axis_a4) <= 1e9
+            -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9
+            and -1e9 <= axis_a3 <= 1e9 and -1e9 <= axis_a4 <= 1e9
         ):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
@@ -713,11 +712,13 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

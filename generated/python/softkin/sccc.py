@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 28 additions, 12 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 101 additions, 95 multiplications, 23 divisions, 4 square roots, 5 sines
-    inverse, all 2 branches open: 195 additions, 184 multiplications, 44 divisions, 8 square roots, 10 sines
+    inverse: 97 additions, 82 multiplications, 21 divisions, 3 square roots, 5 sines
+    inverse, all 2 branches open: 187 additions, 158 multiplications, 40 divisions, 6 square roots, 10 sines
 
 A belt arm with all motors in the base typically has coupling_12 = coupling_23 = -1.
 
@@ -52,6 +52,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
+
+
+_ZERO_AXES = 3*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -399,7 +402,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         cos_a1 = cos(a1)
@@ -428,7 +431,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
@@ -468,10 +471,10 @@ class SCCC(OffsetKinematics, TwistChoice):
         single_a3 = k.single_a3
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -512,24 +515,20 @@ class SCCC(OffsetKinematics, TwistChoice):
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
+            direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
+        angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
+        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
         if abs(turn_a2) > 0.0:
             near_a2 = 360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2
@@ -540,9 +539,10 @@ class SCCC(OffsetKinematics, TwistChoice):
             # A2: where its turn is open
             open_a2 = mid_a2 if single_a2 > 0.0 else offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE
             near_a2 = open_a2
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
+        angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         if abs(turn_a3) > 0.0:
             near_a3 = 360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3
@@ -557,13 +557,10 @@ class SCCC(OffsetKinematics, TwistChoice):
                 # A3: where its turn is open
                 open_a3 = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE
             near_a3 = open_a3
-        cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
-        sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
-        cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
-        sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
-        # A3: its turn
+        # a3: what the sum a123 leaves; A3: its turn
         axis_a3 = (
-            offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
+            offset_a3 + (angle_heading - angle_a1 - angle_a2)/DEGREE
+            - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
         )
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
@@ -621,7 +618,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
@@ -643,7 +640,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -696,7 +693,7 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
@@ -739,8 +736,9 @@ class SCCC(OffsetKinematics, TwistChoice):
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         # numbers of reasonable size
         if not (
-            abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -790,8 +788,9 @@ class SCCC(OffsetKinematics, TwistChoice):
         single_a2 = k.single_a2
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9 and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
+            and -1e9 <= ref_a3 <= 1e9
         ):
             return Status.BAD_INPUT
         # z: a planar machine has none
@@ -828,21 +827,15 @@ class SCCC(OffsetKinematics, TwistChoice):
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
             arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
+            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         else:
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(direction_y_a1, direction_x_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
@@ -876,8 +869,8 @@ class SCCC(OffsetKinematics, TwistChoice):
         offset_a3 = k.offset_a3
         # numbers of reasonable size
         if not (
-            abs(point_x) <= 1e9 and abs(point_y) <= 1e9 and abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9
-            and abs(axis_a3) <= 1e9
+            -1e9 <= point_x <= 1e9 and -1e9 <= point_y <= 1e9 and -1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9
+            and -1e9 <= axis_a3 <= 1e9
         ):
             return Status.BAD_INPUT
         a1 = DEGREE*(axis_a1 - offset_a1)
@@ -898,11 +891,13 @@ class SCCC(OffsetKinematics, TwistChoice):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -41,6 +41,9 @@ if TYPE_CHECKING:
     from softkin._array import Programs
 
 
+_ZERO_AXES = 3*(0.0,)
+
+
 class Constants(NamedTuple):
     """What depends on the parameters alone: computed once, read by every program."""
 
@@ -291,7 +294,7 @@ class TGantry3(OffsetKinematics):
         offset_b = k.offset_b
         offset_z = k.offset_z
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         a = axis_a - offset_a
         b = axis_b - offset_b
@@ -304,7 +307,7 @@ class TGantry3(OffsetKinematics):
         """The rotation of the frame."""
         axis_a, axis_b, axis_z = axes
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -318,7 +321,7 @@ class TGantry3(OffsetKinematics):
         offset_b = k.offset_b
         offset_z = k.offset_z
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Status.BAD_INPUT
         a = x - y  # a, b: affine in the x and y equations
         axis_a = a + offset_a
@@ -368,7 +371,7 @@ class TGantry3(OffsetKinematics):
         """The margins, each zero at its singularity."""
         axis_a, axis_b, axis_z = axes
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ()
 
@@ -376,7 +379,7 @@ class TGantry3(OffsetKinematics):
         """The Jacobian by rows, per radian."""
         axis_a, axis_b, axis_z = axes
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ((0.5, 0.5, 0.0), (-0.5, 0.5, 0.0), (0.0, 0.0, 1.0))
 
@@ -396,8 +399,8 @@ class TGantry3(OffsetKinematics):
         offset_z = k.offset_z
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
             return Status.BAD_INPUT
         a = point_y + x - point_x - y  # a, b: affine in the x and y equations
@@ -412,18 +415,20 @@ class TGantry3(OffsetKinematics):
         """The signed margin of every branch for a point off the flange."""
         axis_a, axis_b, axis_z = axes
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_z) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_z <= 1e9):
             return Status.BAD_INPUT
         return ()
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -39,6 +39,9 @@ if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
 
 
+_ZERO_AXES = 0*(0.0,)
+
+
 class Constants(NamedTuple):
     """What depends on the parameters alone: computed once, read by every program."""
 
@@ -157,7 +160,7 @@ class Tool(OrientationKinematics):
         tool_y = k.tool_y
         tool_z = k.tool_z
         # numbers of reasonable size
-        if not (abs(flange_axis_x) <= 1e9 and abs(flange_axis_y) <= 1e9 and abs(flange_axis_z) <= 1e9):
+        if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
         # what the flange holds, along the axis that it turns about
         flange_along = flange_axis_x*tool_x + flange_axis_y*tool_y + flange_axis_z*tool_z
@@ -181,8 +184,8 @@ class Tool(OrientationKinematics):
         tool_z = k.tool_z
         # numbers of reasonable size
         if not (
-            abs(base_axis_x) <= 1e9 and abs(base_axis_y) <= 1e9 and abs(base_axis_z) <= 1e9
-            and abs(flange_axis_x) <= 1e9 and abs(flange_axis_y) <= 1e9 and abs(flange_axis_z) <= 1e9
+            -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
+            and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9
         ):
             return Status.BAD_INPUT
         # what the flange holds, along the axis that it turns about
@@ -196,10 +199,11 @@ class Tool(OrientationKinematics):
         base_axis_x, base_axis_y, base_axis_z = base_axis
         # numbers of reasonable size
         if not (
-            abs(base_axis_x) <= 1e9 and abs(base_axis_y) <= 1e9 and abs(base_axis_z) <= 1e9
-            and abs(flange_axis_x) <= 1e9 and abs(flange_axis_y) <= 1e9 and abs(flange_axis_z) <= 1e9
-            and abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9
+            -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
+            and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9
+            and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -222,11 +226,13 @@ class Tool(OrientationKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -48,6 +48,9 @@ if TYPE_CHECKING:
     from softkin._array import Programs
 
 
+_ZERO_AXES = 3*(0.0,)
+
+
 class Constants(NamedTuple):
     """What depends on the parameters alone: computed once, read by every program."""
 
@@ -343,7 +346,7 @@ class TripodLinear(OffsetKinematics):
         outer_radius = k.outer_radius
         sin_rail_angle = k.sin_rail_angle
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
@@ -429,7 +432,7 @@ class TripodLinear(OffsetKinematics):
         outer_radius = k.outer_radius
         sin_rail_angle = k.sin_rail_angle
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
@@ -500,7 +503,7 @@ class TripodLinear(OffsetKinematics):
         sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
         sin_rail_angle = k.sin_rail_angle
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return Status.BAD_INPUT
         span_1_x = outer_radius + x - inner_radius  # rod 1
         # a1: quadratic in the rod 1 equation
@@ -618,7 +621,7 @@ class TripodLinear(OffsetKinematics):
         outer_radius = k.outer_radius
         sin_rail_angle = k.sin_rail_angle
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
@@ -717,7 +720,7 @@ class TripodLinear(OffsetKinematics):
         outer_radius = k.outer_radius
         sin_rail_angle = k.sin_rail_angle
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
@@ -855,8 +858,8 @@ class TripodLinear(OffsetKinematics):
         sin_rail_angle = k.sin_rail_angle
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9
         ):
             return Status.BAD_INPUT
         flange_y = y - point_y  # the flange behind the point
@@ -959,7 +962,7 @@ class TripodLinear(OffsetKinematics):
         outer_radius = k.outer_radius
         sin_rail_angle = k.sin_rail_angle
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = axis_a2 - offset_a2
         pivot_2_y = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2*sin_rail_angle  # rod 2
@@ -1031,11 +1034,13 @@ class TripodLinear(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

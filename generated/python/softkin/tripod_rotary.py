@@ -51,6 +51,9 @@ if TYPE_CHECKING:
     from softkin._array import Programs
 
 
+_ZERO_AXES = 3*(0.0,)
+
+
 class Constants(NamedTuple):
     """What depends on the parameters alone: computed once, read by every program."""
 
@@ -377,7 +380,7 @@ class TripodRotary(OffsetKinematics):
         offset_a3 = k.offset_a3
         stewart_radius = k.stewart_radius
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -525,7 +528,7 @@ class TripodRotary(OffsetKinematics):
         offset_a3 = k.offset_a3
         stewart_radius = k.stewart_radius
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -655,8 +658,8 @@ class TripodRotary(OffsetKinematics):
         stewart_radius = k.stewart_radius
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Status.BAD_INPUT
         span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
@@ -905,7 +908,7 @@ class TripodRotary(OffsetKinematics):
         offset_a3 = k.offset_a3
         stewart_radius = k.stewart_radius
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -1066,7 +1069,7 @@ class TripodRotary(OffsetKinematics):
         offset_a3 = k.offset_a3
         stewart_radius = k.stewart_radius
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -1333,8 +1336,9 @@ class TripodRotary(OffsetKinematics):
         stewart_radius = k.stewart_radius
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(point_x) <= 1e9 and abs(point_y) <= 1e9
-            and abs(point_z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9 and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
+            and -1e9 <= point_y <= 1e9 and -1e9 <= point_z <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9
+            and -1e9 <= ref_a3 <= 1e9
         ):
             return Status.BAD_INPUT
         flange_x = x - point_x  # the flange behind the point
@@ -1566,7 +1570,7 @@ class TripodRotary(OffsetKinematics):
         offset_a3 = k.offset_a3
         stewart_radius = k.stewart_radius
         # numbers of reasonable size
-        if not (abs(axis_a1) <= 1e9 and abs(axis_a2) <= 1e9 and abs(axis_a3) <= 1e9):
+        if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
@@ -1701,11 +1705,13 @@ class TripodRotary(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

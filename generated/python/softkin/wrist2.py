@@ -18,8 +18,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 15 additions, 19 multiplications, 2 divisions, 0 square roots, 4 sines
-    inverse: 45 additions, 41 multiplications, 10 divisions, 1 square roots, 4 sines
-    inverse, all 2 branches open: 89 additions, 82 multiplications, 20 divisions, 2 square roots, 8 sines
+    inverse: 45 additions, 41 multiplications, 8 divisions, 1 square roots, 4 sines
+    inverse, all 2 branches open: 89 additions, 82 multiplications, 16 divisions, 2 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import OrientationPrograms
+
+
+_ZERO_AXES = 2*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -207,7 +210,7 @@ class Wrist2(OrientationKinematics):
             raise self._refusal(
                 "roll_axis_offset_z: Flange to axis B, along Z", roll_axis_offset_z=roll_axis_offset_z,
             )
-        if not (abs(tool_side) >= 1.0 and abs(tool_side) <= 1.0):
+        if not (abs(tool_side) >= 1.0 and -1.0 <= tool_side <= 1.0):
             raise self._refusal(
                 "tool_side: +1: the tool points along +Z (library 4.16 and later), -1: along -Z (library 4.12)",
                 tool_side=tool_side,
@@ -272,7 +275,7 @@ class Wrist2(OrientationKinematics):
         tool_length = k.tool_length
         tool_side = k.tool_side
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
         sin_a = sin(a)
@@ -301,7 +304,7 @@ class Wrist2(OrientationKinematics):
         offset_b = k.offset_b
         tool_side = k.tool_side
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
         cos_a = cos(a)
@@ -335,9 +338,9 @@ class Wrist2(OrientationKinematics):
         tool_side = k.tool_side
         # numbers of reasonable size
         if not (
-            abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a) <= 1e9
-            and abs(ref_b) <= 1e9
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -354,17 +357,16 @@ class Wrist2(OrientationKinematics):
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
         if radius_a > 1e-11:
-            along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
-            cos_a = along_a/radius_a  # its reference where it is free
-            across_a = r23_of_a*sigma_roll
-            sin_a = across_a/radius_a
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a = r13_of_a*sigma_roll
+            direction_y_a = r23_of_a*sigma_roll
         else:
             free_a = (ref_a - offset_a)*DEGREE
-            cos_a = cos(free_a)  # its reference where it is free
-            sin_a = sin(free_a)
+            direction_x_a = cos(free_a)  # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_y_a = sin(free_a)
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
         near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a
-        axis_a = offset_a + arctan2(sin_a, cos_a + 0.0)/DEGREE  # A: its turn
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0)/DEGREE  # A: its turn
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
         a_radius_of_b = radius_a*sigma_roll
@@ -397,7 +399,7 @@ class Wrist2(OrientationKinematics):
         k = self._constants
         offset_b = k.offset_b
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         b = DEGREE*(axis_b - offset_b)
         sin_b = sin(b)
@@ -411,7 +413,7 @@ class Wrist2(OrientationKinematics):
         offset_b = k.offset_b
         tool_side = k.tool_side
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         b = DEGREE*(axis_b - offset_b)
         sin_b = sin(b)
@@ -444,7 +446,7 @@ class Wrist2(OrientationKinematics):
         tool_length = k.tool_length
         tool_side = k.tool_side
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
         sin_a = sin(a)
@@ -476,7 +478,7 @@ class Wrist2(OrientationKinematics):
         unmet_offset = k.unmet_offset
         wrist_offset = k.wrist_offset
         # numbers of reasonable size
-        if not (abs(flange_axis_x) <= 1e9 and abs(flange_axis_y) <= 1e9 and abs(flange_axis_z) <= 1e9):
+        if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
         flange_along = flange_axis_z*roll_axis_offset_z  # what the flange holds, along the axis that it turns about
         # off the axis that the flange turns about
@@ -500,10 +502,11 @@ class Wrist2(OrientationKinematics):
         tool_side = k.tool_side
         # numbers of reasonable size
         if not (
-            abs(base_axis_x) <= 1e9 and abs(base_axis_y) <= 1e9 and abs(base_axis_z) <= 1e9
-            and abs(flange_axis_x) <= 1e9 and abs(flange_axis_y) <= 1e9 and abs(flange_axis_z) <= 1e9
-            and abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9
+            -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
+            and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9
+            and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -526,11 +529,13 @@ class Wrist2(OrientationKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -19,8 +19,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 25 additions, 26 multiplications, 3 divisions, 0 square roots, 6 sines
-    inverse: 58 additions, 49 multiplications, 11 divisions, 1 square roots, 5 sines
-    inverse, all 2 branches open: 115 additions, 98 multiplications, 22 divisions, 2 square roots, 10 sines
+    inverse: 58 additions, 49 multiplications, 9 divisions, 1 square roots, 5 sines
+    inverse, all 2 branches open: 115 additions, 98 multiplications, 18 divisions, 2 square roots, 10 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -43,6 +43,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import OrientationPrograms
+
+
+_ZERO_AXES = 3*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -282,7 +285,7 @@ class Wrist3(OrientationKinematics):
         tool_offset_y = k.tool_offset_y
         tool_offset_z = k.tool_offset_z
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_c) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
         cos_a = cos(a)
@@ -320,7 +323,7 @@ class Wrist3(OrientationKinematics):
         offset_b = k.offset_b
         offset_c = k.offset_c
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_c) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
         sin_a = sin(a)
@@ -363,9 +366,9 @@ class Wrist3(OrientationKinematics):
         single_c = k.single_c
         # numbers of reasonable size
         if not (
-            abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a) <= 1e9
-            and abs(ref_b) <= 1e9 and abs(ref_c) <= 1e9
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9 and -1e9 <= ref_c <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -380,17 +383,14 @@ class Wrist3(OrientationKinematics):
             return Status.BAD_INPUT
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
         if radius_c > 1e-11:
-            along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
-            cos_c = along_c/radius_c  # its reference where it is free
-            across_c = -r32*sigma_hand
-            sin_c = across_c/radius_c
+            direction_x_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_y_c = -r32*sigma_hand
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            cos_c = cos(free_c)  # its reference where it is free
-            sin_c = sin(free_c)
-        r22_before_c = r22*cos_c + r21*sin_c
-        r12_before_c = r12*cos_c + r11*sin_c
-        sin_a = -r12_before_c
+            direction_x_c = cos(free_c)  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_y_c = sin(free_c)
+        r22_before_c = direction_x_c*r22 + direction_y_c*r21
+        sin_a = -direction_x_c*r12 - direction_y_c*r11
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
         near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a
         axis_a = offset_a + arctan2(sin_a, r22_before_c + 0.0)/DEGREE  # A: its turn
@@ -404,7 +404,7 @@ class Wrist3(OrientationKinematics):
             axis_b = nearest_period(axis_b, near_b)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
-        axis_c = offset_c + arctan2(sin_c, cos_c + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c - near_c < 179.999999999:
             axis_c = nearest_period(axis_c, near_c)
         return (axis_a, axis_b, axis_c)
@@ -436,7 +436,7 @@ class Wrist3(OrientationKinematics):
         k = self._constants
         offset_b = k.offset_b
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_c) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         b = DEGREE*(axis_b - offset_b)
         sin_b = sin(b)
@@ -449,7 +449,7 @@ class Wrist3(OrientationKinematics):
         offset_a = k.offset_a
         offset_b = k.offset_b
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_c) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
         sin_a = sin(a)
@@ -476,7 +476,7 @@ class Wrist3(OrientationKinematics):
         tool_offset_y = k.tool_offset_y
         tool_offset_z = k.tool_offset_z
         # numbers of reasonable size
-        if not (abs(axis_a) <= 1e9 and abs(axis_b) <= 1e9 and abs(axis_c) <= 1e9):
+        if not (-1e9 <= axis_a <= 1e9 and -1e9 <= axis_b <= 1e9 and -1e9 <= axis_c <= 1e9):
             return Status.BAD_INPUT
         a = DEGREE*(axis_a - offset_a)
         sin_a = sin(a)
@@ -522,8 +522,9 @@ class Wrist3(OrientationKinematics):
         tool_offset_z = k.tool_offset_z
         # numbers of reasonable size
         if not (
-            abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9
         ):
             return Status.BAD_INPUT
         # columns of length one, at right angles
@@ -545,11 +546,13 @@ class Wrist3(OrientationKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         return self._unrolled.every_branch(position, rotation, reference)
 
-    def _directions(self, frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        return self._unrolled.branches(frame, reference)
+    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
 
-    def _direction(self, frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        return self._unrolled.branch(frame, signs, reference)
+    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -122,6 +122,14 @@ class ArrayPrograms(Programs):
         r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
         y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
         y = y_at_q6 + d6*r23_at_q5
+        r33_at_q4 = cos_q23*cos_q4
+        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
+        cos_q2 = cos(q2)
+        z_at_q3 = d1 + a2*cos_q2
+        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
+        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
+        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
+        z = z_at_q6 + d6*r33_at_q5
         r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
         q6 = DEGREE*(axis_a6 - offset_a6)
         sin_q6 = sin(q6)
@@ -131,6 +139,9 @@ class ArrayPrograms(Programs):
         r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
         r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
         r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
+        r32_at_q4 = cos_q23*sin_q4
+        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
+        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
         # the point that the last joints turn about
         wrist_x_tried = x + j6_offset_x*r12_at_q6*sin_q6 - d6*r13_at_q5 - j6_offset_x*r11_at_q6*cos_q6
         wrist_y_tried = y + j6_offset_x*r22_at_q6*sin_q6 - d6*r23_at_q5 - j6_offset_x*r21_at_q6*cos_q6
@@ -153,17 +164,6 @@ class ArrayPrograms(Programs):
             cos_q3 = cos(q3)
             branch_elbow = select(searched > 0.5, (a3*sin_q3 + d4*cos_q3)/machine_scale, margin_elbow_closed)
             branch_wrist = select(searched > 0.5, sin_q4, cos_q5)
-        r33_at_q4 = cos_q23*cos_q4
-        r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
-        cos_q2 = cos(q2)
-        z_at_q3 = d1 + a2*cos_q2
-        z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
-        r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
-        z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
-        z = z_at_q6 + d6*r33_at_q5
-        r32_at_q4 = cos_q23*sin_q4
-        r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
-        r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
         # of the Jacobian, its positions in lengths of the machine
         (determinant,) = solve(
             (
@@ -531,14 +531,12 @@ class ArrayPrograms(Programs):
         else:
             cos_q1 = select(searched > 0.5, cos_q1_tried, cos_q1_closed)
             sin_q1 = select(searched > 0.5, sin_q1_tried, sin_q1_closed)
+            sin_swing_q3_closed = root(sine_square_q3_closed)*sigma_elbow
+            arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed
             cos_swing_q3_closed = (
                 (reach_closed*reach_closed - a2*a2 - effective_q3_closed*effective_q3_closed)/swing_scale_q3_closed
             )
-            sin_swing_q3_closed = root(sine_square_q3_closed)*sigma_elbow
-            cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
-            sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
-            arm_along_q2_closed = a3*sin_q3_closed + d4*cos_q3_closed
-            arm_across_q2_closed = a2 + a3*cos_q3_closed - d4*sin_q3_closed
+            arm_across_q2_closed = a2 + effective_q3_closed*cos_swing_q3_closed
             # q2: linear pair in the x_from_q1 and z_from_q1 equations
             along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
             across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
@@ -555,7 +553,9 @@ class ArrayPrograms(Programs):
             cos_q2 = select(searched > 0.5, cos_q2_tried, cos_q2_closed)
             sin_q2_closed = select(reach_closed > 1e-11*machine_scale, across_q2_closed/length_q2_closed, sin(free_a2))
             sin_q2 = select(searched > 0.5, sin_q2_tried, sin_q2_closed)
+            cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
             cos_q3 = select(searched > 0.5, cos_q3_tried, cos_q3_closed)
+            sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
             sin_q3 = select(searched > 0.5, sin_q3_tried, sin_q3_closed)
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed

@@ -240,6 +240,8 @@ class ArrayPrograms(Programs):
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = root(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        q6_radius_of_q5 = radius_q6*sigma_wrist
+        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         if everywhere(radius_q6 > 1e-11):
             along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
@@ -253,39 +255,36 @@ class ArrayPrograms(Programs):
             cos_q6_before_q6_of_q3 = select(radius_q6 > 1e-11, along_q6/length_q6, cos(free_a6))
             across_q6 = r22_from_q1*sigma_wrist
             sin_q6_before_q6_of_q3 = select(radius_q6 > 1e-11, across_q6/length_q6, sin(free_a6))
-        q6_radius_of_q5 = radius_q6*sigma_wrist
-        r23_from_q1 = r23*cos_q1 - r13*sin_q1
-        cos_q5 = -r23_from_q1  # q5: linear pair in the q6 radius and r32 equations
-        wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
-        wrist_x_from_q1_along = -d5*r31*cos_q5
         wrist_z = z - d6*r33
-        wrist_y_from_q1_fixed = wrist_z - d1
-        wrist_y_from_q1_along = d5*r32
-        wrist_x_from_q1_across = d5*r32*cos_q5
-        wrist_y_from_q1_across = d5*r31
-        wrist_x_from_q1_here = (
-            wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
-            + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
-        )
-        wrist_y_from_q1_here = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3 = (
-            wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
-        )
-        if everywhere(absolute(value_q6_of_q3) <= size_q6_of_q3):
+        if everywhere(radius_q6 > 0.01):
             cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
             sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
         else:
+            wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
             along_q6_of_q3 = (
                 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             )
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_y_from_q1_across = d5*r31
             across_q6_of_q3 = (
                 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )
             swing_q6_of_q3 = root(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+            wrist_x_from_q1_here = (
+                wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
+            )
+            wrist_y_from_q1_here = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
+            )
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3 = (
+                wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
+            )
             level_q6_of_q3 = (
                 value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
             )
@@ -343,9 +342,17 @@ class ArrayPrograms(Programs):
                 select((cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11), 1.0, 0.0),
             )
             # moved to where the rest can be reached
-            cos_q6 = select(stays_q6_of_q3 > 0.0, cos_q6_before_q6_of_q3, cos_q6_after_q6_of_q3)
+            cos_q6 = select(
+                radius_q6 > 0.01,
+                cos_q6_before_q6_of_q3,
+                select(stays_q6_of_q3 > 0.0, cos_q6_before_q6_of_q3, cos_q6_after_q6_of_q3),
+            )
             # moved to where the rest can be reached
-            sin_q6 = select(stays_q6_of_q3 > 0.0, sin_q6_before_q6_of_q3, sin_q6_after_q6_of_q3)
+            sin_q6 = select(
+                radius_q6 > 0.01,
+                sin_q6_before_q6_of_q3,
+                select(stays_q6_of_q3 > 0.0, sin_q6_before_q6_of_q3, sin_q6_after_q6_of_q3),
+            )
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
         # what the unknown links must span
@@ -357,36 +364,6 @@ class ArrayPrograms(Programs):
         sine_square_q3 = (a3 + reach - a2)*(a2 + a3 + reach)*(a2 + a3 - reach)*(a2 + reach - a3)/(scale_q3*scale_q3)
         # q3: out of reach
         require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
-        cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
-        sin_q3 = root(sine_square_q3)*sigma_elbow
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                across_q2*across_q2 + along_q2*along_q2 > 0.0,
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
-            sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -394,31 +371,54 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
+        cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
+        sin_q3 = root(sine_square_q3)*sigma_elbow
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2 = select(
+                reach > 1e-11*machine_scale,
+                arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1,
+                cos(free_a2),
+            )
+            direction_y_q2 = select(
+                reach > 1e-11*machine_scale,
+                arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1,
+                sin(free_a2),
+            )
+        angle_q2 = atan2(direction_y_q2, direction_x_q2)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + angle_q2/DEGREE, near_a2)  # A2: its turn
+        angle_q3 = atan2(sin_q3, cos_q3)
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
-        cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
-        sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
-        cos_q4 = r22_from_q1_before_q6*cos_q23 + r21_from_q1_before_q56*sin_q23  # q4: what the sum q234 leaves
-        sin_q4 = r21_from_q1_before_q56*cos_q23 - r22_from_q1_before_q6*sin_q23
+        axis_a3 = nearest_period(offset_a3 + angle_q3/DEGREE, near_a3)  # A3: its turn
+        angle_with_q4 = atan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_q4, cos_q4)/DEGREE, near_a4)  # A4: its turn
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4 = nearest_period(offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)/DEGREE, near_a4)
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
         near_a5 = select(
             absolute(turn_a5) > 0.0,
@@ -549,41 +549,43 @@ class ArrayPrograms(Programs):
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
         if everywhere(distance_q1 > 1e-11*machine_scale):
             cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1_left = -root(sine_square_q1)
-            cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_left = (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1
-            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
+            sin_swing_q1_right = root(sine_square_q1)
+            cos_q1_left = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_right)/divisor_q1  # its reference where it is free
+            sin_q1_left = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_right)/divisor_q1
+            # its reference where it is free
+            cos_q1_right = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_right)/divisor_q1
+            sin_q1_right = (wrist_y*sin_swing_q1_right - wrist_x*cos_swing_q1)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1_left = -root(sine_square_q1)
+            sin_swing_q1_right = root(sine_square_q1)
             # its reference where it is free
             cos_q1_left = select(
                 distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1,
+                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_right)/divisor_q1,
                 cos(free_a1),
             )
             sin_q1_left = select(
                 distance_q1 > 1e-11*machine_scale,
-                (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1,
+                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_right)/divisor_q1,
                 sin(free_a1),
             )
             # its reference where it is free
             cos_q1_right = select(
                 distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1,
+                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_right)/divisor_q1,
                 cos(free_a1),
             )
             sin_q1_right = select(
                 distance_q1 > 1e-11*machine_scale,
-                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1,
+                (wrist_y*sin_swing_q1_right - wrist_x*cos_swing_q1)/divisor_q1,
                 sin(free_a1),
             )
         r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
         r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
         # q6: direction and distance of a point
         radius_q6_left = root(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
+        cos_q5_left = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
         if everywhere(radius_q6_left > 1e-11):
             cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
             sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
@@ -610,41 +612,42 @@ class ArrayPrograms(Programs):
                 -r22_from_q1_left/length_q6_left,
                 sin(free_a6),
             )
-        r23_from_q1_left = r23*cos_q1_left - r13*sin_q1_left
-        wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
-        wrist_x_from_q1_along_left = d5*r23_from_q1_left*r31
         wrist_z = z - d6*r33
-        wrist_y_from_q1_fixed = wrist_z - d1
-        wrist_y_from_q1_along = d5*r32
-        wrist_x_from_q1_across_left = -d5*r23_from_q1_left*r32
-        wrist_y_from_q1_across = d5*r31
-        wrist_x_from_q1_here_left_down = (
-            wrist_x_from_q1_fixed_left_down + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_down
-            + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_down
-        )
-        wrist_y_from_q1_here_left_down = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_down
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_down
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_left_down = (
-            wrist_x_from_q1_here_left_down*wrist_x_from_q1_here_left_down
-            + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2*a2 - a3*a3
-        )
-        if everywhere(absolute(value_q6_of_q3_left_down) <= size_q6_of_q3):
+        if everywhere(radius_q6_left > 0.01):
             cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
             sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
         else:
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_across = d5*r31
+            wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
+            wrist_x_from_q1_along_left = -d5*r31*cos_q5_left
             along_q6_of_q3_left_down = (
                 2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_down
                 + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             )
+            wrist_x_from_q1_across_left = d5*r32*cos_q5_left
             across_q6_of_q3_left_down = (
                 2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_down
                 + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )
             swing_q6_of_q3_left_down = root(
                 across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
+            )
+            wrist_x_from_q1_here_left_down = (
+                wrist_x_from_q1_fixed_left_down + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_down
+                + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_down
+            )
+            wrist_y_from_q1_here_left_down = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_down
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_down
+            )
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_left_down = (
+                wrist_x_from_q1_here_left_down*wrist_x_from_q1_here_left_down
+                + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2*a2 - a3*a3
             )
             level_q6_of_q3_left_down = (
                 value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
@@ -726,14 +729,128 @@ class ArrayPrograms(Programs):
             )
             # moved to where the rest can be reached
             cos_q6_left_down = select(
-                stays_q6_of_q3_left_down > 0.0, cos_q6_before_q6_of_q3_left_down, cos_q6_after_q6_of_q3_left_down,
+                radius_q6_left > 0.01,
+                cos_q6_before_q6_of_q3_left_down,
+                select(stays_q6_of_q3_left_down > 0.0, cos_q6_before_q6_of_q3_left_down, cos_q6_after_q6_of_q3_left_down),
             )
             # moved to where the rest can be reached
             sin_q6_left_down = select(
-                stays_q6_of_q3_left_down > 0.0, sin_q6_before_q6_of_q3_left_down, sin_q6_after_q6_of_q3_left_down,
+                radius_q6_left > 0.01,
+                sin_q6_before_q6_of_q3_left_down,
+                select(stays_q6_of_q3_left_down > 0.0, sin_q6_before_q6_of_q3_left_down, sin_q6_after_q6_of_q3_left_down),
+            )
+            wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
+            along_q6_of_q3_left_up = (
+                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
+                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            )
+            across_q6_of_q3_left_up = (
+                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
+                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3_left_up = root(
+                across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
+            )
+            wrist_x_from_q1_here_left_up = (
+                wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
+                + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_up
+            )
+            wrist_y_from_q1_here_left_up = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_up
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_up
+            )
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_left_up = (
+                wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
+                + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2*a2 - a3*a3
+            )
+            level_q6_of_q3_left_up = (
+                value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
+                - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
+            )
+            divisor_q6_of_q3_left_up = select(swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3, swing_q6_of_q3_left_up, 1.0)
+            # the arc: cosines from its centre
+            highest_q6_of_q3_left_up = select(
+                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up,
+                    ),
+                ),
+                1.0,
+            )
+            near_q6_of_q3_left_up = atan2(
+                root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
+                highest_q6_of_q3_left_up,
+            )
+            lowest_q6_of_q3_left_up = select(
+                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
+                select(
+                    (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up,
+                    ),
+                ),
+                -1.0,
+            )
+            far_q6_of_q3_left_up = atan2(
+                root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
+                lowest_q6_of_q3_left_up,
+            )
+            centre_q6_of_q3_left_up = atan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up)
+            angle_q6_of_q3_left_up = atan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up)
+            side_q6_of_q3_left_up = select(
+                (
+                    along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
+                    - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
+                ),
+                1.0,
+                -1.0,
+            )
+            moved_q6_of_q3_left_up = nearest_on_arc(
+                angle_q6_of_q3_left_up,
+                (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
+                0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
+            )
+            cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
+            sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
+            # what the motion changes of the pose
+            cost_q6_of_q3_left_up = (
+                root(
+                    (
+                        cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
+                    )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
+                    + (
+                        sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
+                    )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
+                )
+                *radius_q6_left
+            )
+            stays_q6_of_q3_left_up = select(
+                absolute(value_q6_of_q3_left_up) <= size_q6_of_q3,
+                1.0,
+                select((cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left > 1e-11), 1.0, 0.0),
+            )
+            # moved to where the rest can be reached
+            cos_q6_left_up = select(
+                radius_q6_left > 0.01,
+                cos_q6_before_q6_of_q3_left_up,
+                select(stays_q6_of_q3_left_up > 0.0, cos_q6_before_q6_of_q3_left_up, cos_q6_after_q6_of_q3_left_up),
+            )
+            # moved to where the rest can be reached
+            sin_q6_left_up = select(
+                radius_q6_left > 0.01,
+                sin_q6_before_q6_of_q3_left_up,
+                select(stays_q6_of_q3_left_up > 0.0, sin_q6_before_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up),
             )
         r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
-        r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
+        r21_from_q1_before_q56_left_down = r21_from_q1_before_q6_left_down*cos_q5_left - r33*radius_q6_left
         # what the unknown links must span
         wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
         r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
@@ -747,105 +864,196 @@ class ArrayPrograms(Programs):
             (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
             *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
         )
+        refusal_left_down = select(sine_square_q3_left_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        axis_a1_left = nearest_period(offset_a1 + atan2(sin_q1_left, cos_q1_left)/DEGREE, near_a1)  # A1: its turn
         cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
         sin_q3_left_up_down = root(sine_square_q3_left_down)
         if everywhere(reach_left_down > 1e-11*machine_scale):
             arm_along_q2_left_down = a2 + a3*cos_q3_left_down
             arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_down = (
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_left_up_down = (
                 arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
             )
-            across_q2_left_up_down = (
+            direction_y_q2_left_up_down = (
                 arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
             )
-            length_q2_squared_left_up_down = (
-                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
-            )
-            length_q2_left_up_down = select(
-                length_q2_squared_left_up_down > 0.0,
-                root(length_q2_squared_left_up_down),
-                1.0,
-            )
-            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
-            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_down = (
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_left_down_down = (
                 arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
             )
-            across_q2_left_down_down = (
+            direction_y_q2_left_down_down = (
                 arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
             )
-            length_q2_squared_left_down_down = (
-                across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
-            )
-            length_q2_left_down_down = select(
-                length_q2_squared_left_down_down > 0.0,
-                root(length_q2_squared_left_down_down),
-                1.0,
-            )
-            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
-            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             arm_along_q2_left_down = a2 + a3*cos_q3_left_down
             arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_down = (
-                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
-            )
-            across_q2_left_up_down = (
-                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
-            )
-            length_q2_squared_left_up_down = (
-                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
-            )
-            length_q2_left_up_down = select(
-                (length_q2_squared_left_up_down > 0.0) & (reach_left_down > 1e-11*machine_scale),
-                root(length_q2_squared_left_up_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_up_down = select(
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_left_up_down = select(
                 reach_left_down > 1e-11*machine_scale,
-                along_q2_left_up_down/length_q2_left_up_down,
+                (arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down),
                 cos(free_a2),
             )
-            sin_q2_left_up_down = select(
+            direction_y_q2_left_up_down = select(
                 reach_left_down > 1e-11*machine_scale,
-                across_q2_left_up_down/length_q2_left_up_down,
+                (arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down),
                 sin(free_a2),
             )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_down = (
-                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
-            )
-            across_q2_left_down_down = (
-                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
-            )
-            length_q2_squared_left_down_down = (
-                across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
-            )
-            length_q2_left_down_down = select(
-                (length_q2_squared_left_down_down > 0.0) & (reach_left_down > 1e-11*machine_scale),
-                root(length_q2_squared_left_down_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_down_down = select(
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_left_down_down = select(
                 reach_left_down > 1e-11*machine_scale,
-                along_q2_left_down_down/length_q2_left_down_down,
+                (arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down),
                 cos(free_a2),
             )
-            sin_q2_left_down_down = select(
+            direction_y_q2_left_down_down = select(
                 reach_left_down > 1e-11*machine_scale,
-                across_q2_left_down_down/length_q2_left_down_down,
+                (arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down),
                 sin(free_a2),
             )
+        angle_q2_left_up_down = atan2(direction_y_q2_left_up_down, direction_x_q2_left_up_down)
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        axis_a2_left_up_down = nearest_period(offset_a2 + angle_q2_left_up_down/DEGREE, near_a2)  # A2: its turn
+        angle_q3_left_up_down = atan2(sin_q3_left_up_down, cos_q3_left_down)
+        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(
+            absolute(turn_a3) > 0.0,
+            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+            open_a3,
+        )
+        axis_a3_left_up_down = nearest_period(offset_a3 + angle_q3_left_up_down/DEGREE, near_a3)  # A3: its turn
+        angle_with_q4_left_down = atan2(r21_from_q1_before_q56_left_down, r22_from_q1_before_q6_left_down)
+        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(
+            absolute(turn_a4) > 0.0,
+            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
+            open_a4,
+        )
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_up_down = nearest_period(
+            offset_a4 + (angle_with_q4_left_down - angle_q2_left_up_down - angle_q3_left_up_down)/DEGREE, near_a4,
+        )
+        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(
+            absolute(turn_a5) > 0.0,
+            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
+            open_a5,
+        )
+        # A5: its turn
+        axis_a5_left_down = nearest_period(offset_a5 + atan2(radius_q6_left, cos_q5_left)/DEGREE, near_a5)
+        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(
+            absolute(turn_a6) > 0.0,
+            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
+            open_a6,
+        )
+        # A6: its turn
+        axis_a6_left_down = nearest_period(offset_a6 + atan2(sin_q6_left_down, cos_q6_left_down)/DEGREE, near_a6)
+        r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
+        r21_from_q1_before_q56_left_up = r21_from_q1_before_q6_left_up*cos_q5_left + r33*radius_q6_left
+        # what the unknown links must span
+        wrist_x_from_q1_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_up
+        r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
+        wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
+        reach_left_up = root(
+            wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
+        )
+        # kept as a product
+        sine_square_q3_left_up = (
+            (a3 + reach_left_up - a2)*(a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)*(a2 + reach_left_up - a3)
+            /(scale_q3*scale_q3)
+        )
+        refusal_left_up = select(sine_square_q3_left_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
+        cos_q3_left_up = (reach_left_up*reach_left_up - a2*a2 - a3*a3)/scale_q3
+        sin_q3_left_up_up = root(sine_square_q3_left_up)
+        if everywhere(reach_left_up > 1e-11*machine_scale):
+            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
+            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_left_up_up = (
+                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
+            )
+            direction_y_q2_left_up_up = (
+                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_left_down_up = (
+                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
+            )
+            direction_y_q2_left_down_up = (
+                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
+            )
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
+            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_left_up_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up,
+                cos(free_a2),
+            )
+            direction_y_q2_left_up_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up,
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_left_down_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up,
+                cos(free_a2),
+            )
+            direction_y_q2_left_down_up = select(
+                reach_left_up > 1e-11*machine_scale,
+                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up,
+                sin(free_a2),
+            )
+        angle_q2_left_up_up = atan2(direction_y_q2_left_up_up, direction_x_q2_left_up_up)
+        axis_a2_left_up_up = nearest_period(offset_a2 + angle_q2_left_up_up/DEGREE, near_a2)  # A2: its turn
+        angle_q3_left_up_up = atan2(sin_q3_left_up_up, cos_q3_left_up)
+        axis_a3_left_up_up = nearest_period(offset_a3 + angle_q3_left_up_up/DEGREE, near_a3)  # A3: its turn
+        angle_with_q4_left_up = atan2(r21_from_q1_before_q56_left_up, r22_from_q1_before_q6_left_up)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_up_up = nearest_period(
+            offset_a4 + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_left_up = nearest_period(offset_a5 + atan2(-radius_q6_left, cos_q5_left)/DEGREE, near_a5)
+        # A6: its turn
+        axis_a6_left_up = nearest_period(offset_a6 + atan2(sin_q6_left_up, cos_q6_left_up)/DEGREE, near_a6)
+        angle_q2_left_down_down = atan2(direction_y_q2_left_down_down, direction_x_q2_left_down_down)
+        axis_a2_left_down_down = nearest_period(offset_a2 + angle_q2_left_down_down/DEGREE, near_a2)  # A2: its turn
+        angle_q3_left_down_down = atan2(-sin_q3_left_up_down, cos_q3_left_down)
+        axis_a3_left_down_down = nearest_period(offset_a3 + angle_q3_left_down_down/DEGREE, near_a3)  # A3: its turn
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_down_down = nearest_period(
+            offset_a4 + (angle_with_q4_left_down - angle_q2_left_down_down - angle_q3_left_down_down)/DEGREE, near_a4,
+        )
+        angle_q2_left_down_up = atan2(direction_y_q2_left_down_up, direction_x_q2_left_down_up)
+        axis_a2_left_down_up = nearest_period(offset_a2 + angle_q2_left_down_up/DEGREE, near_a2)  # A2: its turn
+        angle_q3_left_down_up = atan2(-sin_q3_left_up_up, cos_q3_left_up)
+        axis_a3_left_down_up = nearest_period(offset_a3 + angle_q3_left_down_up/DEGREE, near_a3)  # A3: its turn
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_down_up = nearest_period(
+            offset_a4 + (angle_with_q4_left_up - angle_q2_left_down_up - angle_q3_left_down_up)/DEGREE, near_a4,
+        )
         r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
         r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
         # q6: direction and distance of a point
         radius_q6_right = root(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
+        cos_q5_right = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
         if everywhere(radius_q6_right > 1e-11):
             cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
             sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
@@ -876,31 +1084,22 @@ class ArrayPrograms(Programs):
                 -r22_from_q1_right/length_q6_right,
                 sin(free_a6),
             )
-        r23_from_q1_right = r23*cos_q1_right - r13*sin_q1_right
-        wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
-        wrist_x_from_q1_along_right = d5*r23_from_q1_right*r31
-        wrist_x_from_q1_across_right = -d5*r23_from_q1_right*r32
-        wrist_x_from_q1_here_right_down = (
-            wrist_x_from_q1_fixed_right_down + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_down
-            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_down
-        )
-        wrist_y_from_q1_here_right_down = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_down
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_down
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_right_down = (
-            wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
-            + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2*a2 - a3*a3
-        )
-        if everywhere(absolute(value_q6_of_q3_right_down) <= size_q6_of_q3):
+        if everywhere(radius_q6_right > 0.01):
             cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
             sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
         else:
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_across = d5*r31
+            wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
+            wrist_x_from_q1_along_right = -d5*r31*cos_q5_right
             along_q6_of_q3_right_down = (
                 2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
                 + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             )
+            wrist_x_from_q1_across_right = d5*r32*cos_q5_right
             across_q6_of_q3_right_down = (
                 2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down
                 + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
@@ -908,6 +1107,19 @@ class ArrayPrograms(Programs):
             swing_q6_of_q3_right_down = root(
                 across_q6_of_q3_right_down*across_q6_of_q3_right_down
                 + along_q6_of_q3_right_down*along_q6_of_q3_right_down
+            )
+            wrist_x_from_q1_here_right_down = (
+                wrist_x_from_q1_fixed_right_down + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_down
+                + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_down
+            )
+            wrist_y_from_q1_here_right_down = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_down
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_down
+            )
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_right_down = (
+                wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
+                + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2*a2 - a3*a3
             )
             level_q6_of_q3_right_down = (
                 value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
@@ -989,366 +1201,21 @@ class ArrayPrograms(Programs):
             )
             # moved to where the rest can be reached
             cos_q6_right_down = select(
-                stays_q6_of_q3_right_down > 0.0, cos_q6_before_q6_of_q3_right_down, cos_q6_after_q6_of_q3_right_down,
+                radius_q6_right > 0.01,
+                cos_q6_before_q6_of_q3_right_down,
+                select(
+                    stays_q6_of_q3_right_down > 0.0, cos_q6_before_q6_of_q3_right_down, cos_q6_after_q6_of_q3_right_down,
+                ),
             )
             # moved to where the rest can be reached
             sin_q6_right_down = select(
-                stays_q6_of_q3_right_down > 0.0, sin_q6_before_q6_of_q3_right_down, sin_q6_after_q6_of_q3_right_down,
-            )
-        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
-        r21_from_q1_before_q56_right_down = -r21_from_q1_before_q6_right_down*r23_from_q1_right - r33*radius_q6_right
-        # what the unknown links must span
-        wrist_x_from_q1_right_down = (
-            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
-        )
-        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
-        # what the unknown links must span
-        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
-        reach_right_down = root(
-            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
-            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
-        )
-        # kept as a product
-        sine_square_q3_right_down = (
-            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
-            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
-        )
-        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
-        sin_q3_right_up_down = root(sine_square_q3_right_down)
-        if everywhere(reach_right_down > 1e-11*machine_scale):
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_down = (
-                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                + arm_along_q2_right_down*wrist_x_from_q1_right_down
-            )
-            across_q2_right_up_down = (
-                arm_along_q2_right_down*wrist_y_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            )
-            length_q2_squared_right_up_down = (
-                across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
-            )
-            length_q2_right_up_down = select(
-                length_q2_squared_right_up_down > 0.0,
-                root(length_q2_squared_right_up_down),
-                1.0,
-            )
-            cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
-            sin_q2_right_up_down = across_q2_right_up_down/length_q2_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_down = (
-                arm_along_q2_right_down*wrist_x_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            )
-            across_q2_right_down_down = (
-                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                + arm_along_q2_right_down*wrist_y_from_q1_right_down
-            )
-            length_q2_squared_right_down_down = (
-                across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
-            )
-            length_q2_right_down_down = select(
-                length_q2_squared_right_down_down > 0.0,
-                root(length_q2_squared_right_down_down),
-                1.0,
-            )
-            cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
-            sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_down = (
-                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                + arm_along_q2_right_down*wrist_x_from_q1_right_down
-            )
-            across_q2_right_up_down = (
-                arm_along_q2_right_down*wrist_y_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            )
-            length_q2_squared_right_up_down = (
-                across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
-            )
-            length_q2_right_up_down = select(
-                (length_q2_squared_right_up_down > 0.0) & (reach_right_down > 1e-11*machine_scale),
-                root(length_q2_squared_right_up_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_right_up_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                along_q2_right_up_down/length_q2_right_up_down,
-                cos(free_a2),
-            )
-            sin_q2_right_up_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                across_q2_right_up_down/length_q2_right_up_down,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_down = (
-                arm_along_q2_right_down*wrist_x_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            )
-            across_q2_right_down_down = (
-                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                + arm_along_q2_right_down*wrist_y_from_q1_right_down
-            )
-            length_q2_squared_right_down_down = (
-                across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
-            )
-            length_q2_right_down_down = select(
-                (length_q2_squared_right_down_down > 0.0) & (reach_right_down > 1e-11*machine_scale),
-                root(length_q2_squared_right_down_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_right_down_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                along_q2_right_down_down/length_q2_right_down_down,
-                cos(free_a2),
-            )
-            sin_q2_right_down_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                across_q2_right_down_down/length_q2_right_down_down,
-                sin(free_a2),
-            )
-        wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
-        wrist_x_from_q1_here_left_up = (
-            wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
-            + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_up
-        )
-        wrist_y_from_q1_here_left_up = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_up
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_up
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_left_up = (
-            wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
-            + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2*a2 - a3*a3
-        )
-        if everywhere(absolute(value_q6_of_q3_left_up) <= size_q6_of_q3):
-            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-        else:
-            along_q6_of_q3_left_up = (
-                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_left_up = (
-                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_left_up = root(
-                across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
-            )
-            level_q6_of_q3_left_up = (
-                value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
-            )
-            divisor_q6_of_q3_left_up = select(swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3, swing_q6_of_q3_left_up, 1.0)
-            # the arc: cosines from its centre
-            highest_q6_of_q3_left_up = select(
-                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
+                radius_q6_right > 0.01,
+                sin_q6_before_q6_of_q3_right_down,
                 select(
-                    (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up,
-                    ),
+                    stays_q6_of_q3_right_down > 0.0, sin_q6_before_q6_of_q3_right_down, sin_q6_after_q6_of_q3_right_down,
                 ),
-                1.0,
             )
-            near_q6_of_q3_left_up = atan2(
-                root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
-                highest_q6_of_q3_left_up,
-            )
-            lowest_q6_of_q3_left_up = select(
-                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up,
-                    ),
-                ),
-                -1.0,
-            )
-            far_q6_of_q3_left_up = atan2(
-                root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
-                lowest_q6_of_q3_left_up,
-            )
-            centre_q6_of_q3_left_up = atan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up)
-            angle_q6_of_q3_left_up = atan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up)
-            side_q6_of_q3_left_up = select(
-                (
-                    along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                    - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
-                ),
-                1.0,
-                -1.0,
-            )
-            moved_q6_of_q3_left_up = nearest_on_arc(
-                angle_q6_of_q3_left_up,
-                (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
-                0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
-            )
-            cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
-            sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
-            # what the motion changes of the pose
-            cost_q6_of_q3_left_up = (
-                root(
-                    (
-                        cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
-                    )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
-                    + (
-                        sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
-                    )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
-                )
-                *radius_q6_left
-            )
-            stays_q6_of_q3_left_up = select(
-                absolute(value_q6_of_q3_left_up) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left > 1e-11), 1.0, 0.0),
-            )
-            # moved to where the rest can be reached
-            cos_q6_left_up = select(
-                stays_q6_of_q3_left_up > 0.0, cos_q6_before_q6_of_q3_left_up, cos_q6_after_q6_of_q3_left_up,
-            )
-            # moved to where the rest can be reached
-            sin_q6_left_up = select(
-                stays_q6_of_q3_left_up > 0.0, sin_q6_before_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up,
-            )
-        r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
-        r21_from_q1_before_q56_left_up = r33*radius_q6_left - r21_from_q1_before_q6_left_up*r23_from_q1_left
-        # what the unknown links must span
-        wrist_x_from_q1_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_up
-        r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
-        wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
-        reach_left_up = root(
-            wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
-        )
-        # kept as a product
-        sine_square_q3_left_up = (
-            (a3 + reach_left_up - a2)*(a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)*(a2 + reach_left_up - a3)
-            /(scale_q3*scale_q3)
-        )
-        cos_q3_left_up = (reach_left_up*reach_left_up - a2*a2 - a3*a3)/scale_q3
-        sin_q3_left_up_up = root(sine_square_q3_left_up)
-        if everywhere(reach_left_up > 1e-11*machine_scale):
-            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_up = (
-                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
-            )
-            across_q2_left_up_up = (
-                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
-            )
-            length_q2_squared_left_up_up = (
-                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
-            )
-            length_q2_left_up_up = select(length_q2_squared_left_up_up > 0.0, root(length_q2_squared_left_up_up), 1.0)
-            cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
-            sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_up = (
-                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
-            )
-            across_q2_left_down_up = (
-                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
-            )
-            length_q2_squared_left_down_up = (
-                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
-            )
-            length_q2_left_down_up = select(
-                length_q2_squared_left_down_up > 0.0,
-                root(length_q2_squared_left_down_up),
-                1.0,
-            )
-            cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
-            sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_up = (
-                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
-            )
-            across_q2_left_up_up = (
-                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
-            )
-            length_q2_squared_left_up_up = (
-                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
-            )
-            length_q2_left_up_up = select(
-                (length_q2_squared_left_up_up > 0.0) & (reach_left_up > 1e-11*machine_scale),
-                root(length_q2_squared_left_up_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_up_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                along_q2_left_up_up/length_q2_left_up_up,
-                cos(free_a2),
-            )
-            sin_q2_left_up_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                across_q2_left_up_up/length_q2_left_up_up,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_up = (
-                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
-            )
-            across_q2_left_down_up = (
-                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
-            )
-            length_q2_squared_left_down_up = (
-                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
-            )
-            length_q2_left_down_up = select(
-                (length_q2_squared_left_down_up > 0.0) & (reach_left_up > 1e-11*machine_scale),
-                root(length_q2_squared_left_down_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_down_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                along_q2_left_down_up/length_q2_left_down_up,
-                cos(free_a2),
-            )
-            sin_q2_left_down_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                across_q2_left_down_up/length_q2_left_down_up,
-                sin(free_a2),
-            )
-        wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
-        wrist_x_from_q1_here_right_up = (
-            wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
-            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
-        )
-        wrist_y_from_q1_here_right_up = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_up
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_up
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_right_up = (
-            wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
-            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
-        )
-        if everywhere(absolute(value_q6_of_q3_right_up) <= size_q6_of_q3):
-            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-        else:
+            wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
             along_q6_of_q3_right_up = (
                 2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
                 + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
@@ -1359,6 +1226,19 @@ class ArrayPrograms(Programs):
             )
             swing_q6_of_q3_right_up = root(
                 across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
+            )
+            wrist_x_from_q1_here_right_up = (
+                wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
+                + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
+            )
+            wrist_y_from_q1_here_right_up = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_up
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_up
+            )
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_right_up = (
+                wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
+                + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
             )
             level_q6_of_q3_right_up = (
                 value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
@@ -1437,14 +1317,112 @@ class ArrayPrograms(Programs):
             )
             # moved to where the rest can be reached
             cos_q6_right_up = select(
-                stays_q6_of_q3_right_up > 0.0, cos_q6_before_q6_of_q3_right_up, cos_q6_after_q6_of_q3_right_up,
+                radius_q6_right > 0.01,
+                cos_q6_before_q6_of_q3_right_up,
+                select(stays_q6_of_q3_right_up > 0.0, cos_q6_before_q6_of_q3_right_up, cos_q6_after_q6_of_q3_right_up),
             )
             # moved to where the rest can be reached
             sin_q6_right_up = select(
-                stays_q6_of_q3_right_up > 0.0, sin_q6_before_q6_of_q3_right_up, sin_q6_after_q6_of_q3_right_up,
+                radius_q6_right > 0.01,
+                sin_q6_before_q6_of_q3_right_up,
+                select(stays_q6_of_q3_right_up > 0.0, sin_q6_before_q6_of_q3_right_up, sin_q6_after_q6_of_q3_right_up),
             )
+        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
+        r21_from_q1_before_q56_right_down = r21_from_q1_before_q6_right_down*cos_q5_right - r33*radius_q6_right
+        # what the unknown links must span
+        wrist_x_from_q1_right_down = (
+            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
+        )
+        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
+        # what the unknown links must span
+        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
+        reach_right_down = root(
+            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
+            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
+        )
+        # kept as a product
+        sine_square_q3_right_down = (
+            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
+            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
+        )
+        refusal_right_down = select(sine_square_q3_right_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
+        axis_a1_right = nearest_period(offset_a1 + atan2(sin_q1_right, cos_q1_right)/DEGREE, near_a1)  # A1: its turn
+        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
+        sin_q3_right_up_down = root(sine_square_q3_right_down)
+        if everywhere(reach_right_down > 1e-11*machine_scale):
+            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
+            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_right_up_down = (
+                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+                + arm_along_q2_right_down*wrist_x_from_q1_right_down
+            )
+            direction_y_q2_right_up_down = (
+                arm_along_q2_right_down*wrist_y_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_right_down_down = (
+                arm_along_q2_right_down*wrist_x_from_q1_right_down
+                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+            )
+            direction_y_q2_right_down_down = (
+                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+                + arm_along_q2_right_down*wrist_y_from_q1_right_down
+            )
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
+            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_right_up_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                (
+                    arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+                    + arm_along_q2_right_down*wrist_x_from_q1_right_down
+                ),
+                cos(free_a2),
+            )
+            direction_y_q2_right_up_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                (
+                    arm_along_q2_right_down*wrist_y_from_q1_right_down
+                    - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+                ),
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_right_down_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                (
+                    arm_along_q2_right_down*wrist_x_from_q1_right_down
+                    - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+                ),
+                cos(free_a2),
+            )
+            direction_y_q2_right_down_down = select(
+                reach_right_down > 1e-11*machine_scale,
+                (
+                    arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+                    + arm_along_q2_right_down*wrist_y_from_q1_right_down
+                ),
+                sin(free_a2),
+            )
+        angle_q2_right_up_down = atan2(direction_y_q2_right_up_down, direction_x_q2_right_up_down)
+        axis_a2_right_up_down = nearest_period(offset_a2 + angle_q2_right_up_down/DEGREE, near_a2)  # A2: its turn
+        angle_q3_right_up_down = atan2(sin_q3_right_up_down, cos_q3_right_down)
+        axis_a3_right_up_down = nearest_period(offset_a3 + angle_q3_right_up_down/DEGREE, near_a3)  # A3: its turn
+        angle_with_q4_right_down = atan2(r21_from_q1_before_q56_right_down, r22_from_q1_before_q6_right_down)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_up_down = nearest_period(
+            offset_a4 + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_right_down = nearest_period(offset_a5 + atan2(radius_q6_right, cos_q5_right)/DEGREE, near_a5)
+        # A6: its turn
+        axis_a6_right_down = nearest_period(offset_a6 + atan2(sin_q6_right_down, cos_q6_right_down)/DEGREE, near_a6)
         r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
-        r21_from_q1_before_q56_right_up = r33*radius_q6_right - r21_from_q1_before_q6_right_up*r23_from_q1_right
+        r21_from_q1_before_q56_right_up = r21_from_q1_before_q6_right_up*cos_q5_right + r33*radius_q6_right
         # what the unknown links must span
         wrist_x_from_q1_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_up
         r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
@@ -1458,326 +1436,81 @@ class ArrayPrograms(Programs):
             (a3 + reach_right_up - a2)*(a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
             *(a2 + reach_right_up - a3)/(scale_q3*scale_q3)
         )
+        refusal_right_up = select(sine_square_q3_right_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
         cos_q3_right_up = (reach_right_up*reach_right_up - a2*a2 - a3*a3)/scale_q3
         sin_q3_right_up_up = root(sine_square_q3_right_up)
         if everywhere(reach_right_up > 1e-11*machine_scale):
             arm_along_q2_right_up = a2 + a3*cos_q3_right_up
             arm_across_q2_right_up_up = a3*sin_q3_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_up = (
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_right_up_up = (
                 arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
             )
-            across_q2_right_up_up = (
+            direction_y_q2_right_up_up = (
                 arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
             )
-            length_q2_squared_right_up_up = (
-                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
-            )
-            length_q2_right_up_up = select(length_q2_squared_right_up_up > 0.0, root(length_q2_squared_right_up_up), 1.0)
-            cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
-            sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_up = (
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_right_down_up = (
                 arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
             )
-            across_q2_right_down_up = (
+            direction_y_q2_right_down_up = (
                 arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
             )
-            length_q2_squared_right_down_up = (
-                across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
-            )
-            length_q2_right_down_up = select(
-                length_q2_squared_right_down_up > 0.0,
-                root(length_q2_squared_right_down_up),
-                1.0,
-            )
-            cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
-            sin_q2_right_down_up = across_q2_right_down_up/length_q2_right_down_up
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             arm_along_q2_right_up = a2 + a3*cos_q3_right_up
             arm_across_q2_right_up_up = a3*sin_q3_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_up = (
-                arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
-            )
-            across_q2_right_up_up = (
-                arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
-            )
-            length_q2_squared_right_up_up = (
-                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
-            )
-            length_q2_right_up_up = select(
-                (length_q2_squared_right_up_up > 0.0) & (reach_right_up > 1e-11*machine_scale),
-                root(length_q2_squared_right_up_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_right_up_up = select(
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_right_up_up = select(
                 reach_right_up > 1e-11*machine_scale,
-                along_q2_right_up_up/length_q2_right_up_up,
+                (arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up),
                 cos(free_a2),
             )
-            sin_q2_right_up_up = select(
+            direction_y_q2_right_up_up = select(
                 reach_right_up > 1e-11*machine_scale,
-                across_q2_right_up_up/length_q2_right_up_up,
+                (arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up),
                 sin(free_a2),
             )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_up = (
-                arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
-            )
-            across_q2_right_down_up = (
-                arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
-            )
-            length_q2_squared_right_down_up = (
-                across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
-            )
-            length_q2_right_down_up = select(
-                (length_q2_squared_right_down_up > 0.0) & (reach_right_up > 1e-11*machine_scale),
-                root(length_q2_squared_right_down_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_right_down_up = select(
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_right_down_up = select(
                 reach_right_up > 1e-11*machine_scale,
-                along_q2_right_down_up/length_q2_right_down_up,
+                (arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up),
                 cos(free_a2),
             )
-            sin_q2_right_down_up = select(
+            direction_y_q2_right_down_up = select(
                 reach_right_up > 1e-11*machine_scale,
-                across_q2_right_down_up/length_q2_right_down_up,
+                (arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up),
                 sin(free_a2),
             )
-        refusal_left_down = select(sine_square_q3_left_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_q1_left, cos_q1_left)/DEGREE, near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
-        # A2: its turn
-        axis_a2_left_up_down = nearest_period(
-            offset_a2 + atan2(sin_q2_left_up_down, cos_q2_left_up_down)/DEGREE, near_a2,
-        )
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
-        # A3: its turn
-        axis_a3_left_up_down = nearest_period(
-            offset_a3 + atan2(sin_q3_left_up_down, cos_q3_left_down)/DEGREE, near_a3,
-        )
-        cos_q23_left_up_down = cos_q2_left_up_down*cos_q3_left_down - sin_q2_left_up_down*sin_q3_left_up_down
-        sin_q23_left_up_down = cos_q2_left_up_down*sin_q3_left_up_down + cos_q3_left_down*sin_q2_left_up_down
-        # q4: what the sum q234 leaves
-        cos_q4_left_up_down = (
-            r22_from_q1_before_q6_left_down*cos_q23_left_up_down
-            + r21_from_q1_before_q56_left_down*sin_q23_left_up_down
-        )
-        sin_q4_left_up_down = (
-            r21_from_q1_before_q56_left_down*cos_q23_left_up_down
-            - r22_from_q1_before_q6_left_down*sin_q23_left_up_down
-        )
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
-        # A4: its turn
-        axis_a4_left_up_down = nearest_period(
-            offset_a4 + atan2(sin_q4_left_up_down, cos_q4_left_up_down)/DEGREE, near_a4,
-        )
-        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(
-            absolute(turn_a5) > 0.0,
-            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
-            open_a5,
-        )
-        # A5: its turn
-        axis_a5_left_down = nearest_period(offset_a5 + atan2(radius_q6_left, -r23_from_q1_left)/DEGREE, near_a5)
-        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(
-            absolute(turn_a6) > 0.0,
-            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
-            open_a6,
-        )
-        # A6: its turn
-        axis_a6_left_down = nearest_period(offset_a6 + atan2(sin_q6_left_down, cos_q6_left_down)/DEGREE, near_a6)
-        refusal_right_down = select(sine_square_q3_right_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_q1_right, cos_q1_right)/DEGREE, near_a1)  # A1: its turn
-        # A2: its turn
-        axis_a2_right_up_down = nearest_period(
-            offset_a2 + atan2(sin_q2_right_up_down, cos_q2_right_up_down)/DEGREE, near_a2,
-        )
-        # A3: its turn
-        axis_a3_right_up_down = nearest_period(
-            offset_a3 + atan2(sin_q3_right_up_down, cos_q3_right_down)/DEGREE, near_a3,
-        )
-        cos_q23_right_up_down = cos_q2_right_up_down*cos_q3_right_down - sin_q2_right_up_down*sin_q3_right_up_down
-        sin_q23_right_up_down = cos_q2_right_up_down*sin_q3_right_up_down + cos_q3_right_down*sin_q2_right_up_down
-        # q4: what the sum q234 leaves
-        cos_q4_right_up_down = (
-            r22_from_q1_before_q6_right_down*cos_q23_right_up_down
-            + r21_from_q1_before_q56_right_down*sin_q23_right_up_down
-        )
-        sin_q4_right_up_down = (
-            r21_from_q1_before_q56_right_down*cos_q23_right_up_down
-            - r22_from_q1_before_q6_right_down*sin_q23_right_up_down
-        )
-        # A4: its turn
-        axis_a4_right_up_down = nearest_period(
-            offset_a4 + atan2(sin_q4_right_up_down, cos_q4_right_up_down)/DEGREE, near_a4,
-        )
-        # A5: its turn
-        axis_a5_right_down = nearest_period(offset_a5 + atan2(radius_q6_right, -r23_from_q1_right)/DEGREE, near_a5)
-        # A6: its turn
-        axis_a6_right_down = nearest_period(offset_a6 + atan2(sin_q6_right_down, cos_q6_right_down)/DEGREE, near_a6)
-        # A2: its turn
-        axis_a2_left_down_down = nearest_period(
-            offset_a2 + atan2(sin_q2_left_down_down, cos_q2_left_down_down)/DEGREE, near_a2,
-        )
-        # A3: its turn
-        axis_a3_left_down_down = nearest_period(
-            offset_a3 + atan2(-sin_q3_left_up_down, cos_q3_left_down)/DEGREE, near_a3,
-        )
-        cos_q23_left_down_down = cos_q2_left_down_down*cos_q3_left_down + sin_q2_left_down_down*sin_q3_left_up_down
-        sin_q23_left_down_down = cos_q3_left_down*sin_q2_left_down_down - cos_q2_left_down_down*sin_q3_left_up_down
-        # q4: what the sum q234 leaves
-        cos_q4_left_down_down = (
-            r22_from_q1_before_q6_left_down*cos_q23_left_down_down
-            + r21_from_q1_before_q56_left_down*sin_q23_left_down_down
-        )
-        sin_q4_left_down_down = (
-            r21_from_q1_before_q56_left_down*cos_q23_left_down_down
-            - r22_from_q1_before_q6_left_down*sin_q23_left_down_down
-        )
-        # A4: its turn
-        axis_a4_left_down_down = nearest_period(
-            offset_a4 + atan2(sin_q4_left_down_down, cos_q4_left_down_down)/DEGREE, near_a4,
-        )
-        # A2: its turn
-        axis_a2_right_down_down = nearest_period(
-            offset_a2 + atan2(sin_q2_right_down_down, cos_q2_right_down_down)/DEGREE, near_a2,
-        )
-        # A3: its turn
-        axis_a3_right_down_down = nearest_period(
-            offset_a3 + atan2(-sin_q3_right_up_down, cos_q3_right_down)/DEGREE, near_a3,
-        )
-        cos_q23_right_down_down = (
-            cos_q2_right_down_down*cos_q3_right_down + sin_q2_right_down_down*sin_q3_right_up_down
-        )
-        sin_q23_right_down_down = (
-            cos_q3_right_down*sin_q2_right_down_down - cos_q2_right_down_down*sin_q3_right_up_down
-        )
-        # q4: what the sum q234 leaves
-        cos_q4_right_down_down = (
-            r22_from_q1_before_q6_right_down*cos_q23_right_down_down
-            + r21_from_q1_before_q56_right_down*sin_q23_right_down_down
-        )
-        sin_q4_right_down_down = (
-            r21_from_q1_before_q56_right_down*cos_q23_right_down_down
-            - r22_from_q1_before_q6_right_down*sin_q23_right_down_down
-        )
-        # A4: its turn
-        axis_a4_right_down_down = nearest_period(
-            offset_a4 + atan2(sin_q4_right_down_down, cos_q4_right_down_down)/DEGREE, near_a4,
-        )
-        refusal_left_up = select(sine_square_q3_left_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        # A2: its turn
-        axis_a2_left_up_up = nearest_period(offset_a2 + atan2(sin_q2_left_up_up, cos_q2_left_up_up)/DEGREE, near_a2)
-        # A3: its turn
-        axis_a3_left_up_up = nearest_period(offset_a3 + atan2(sin_q3_left_up_up, cos_q3_left_up)/DEGREE, near_a3)
-        cos_q23_left_up_up = cos_q2_left_up_up*cos_q3_left_up - sin_q2_left_up_up*sin_q3_left_up_up
-        sin_q23_left_up_up = cos_q2_left_up_up*sin_q3_left_up_up + cos_q3_left_up*sin_q2_left_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_left_up_up = (
-            r22_from_q1_before_q6_left_up*cos_q23_left_up_up + r21_from_q1_before_q56_left_up*sin_q23_left_up_up
-        )
-        sin_q4_left_up_up = (
-            r21_from_q1_before_q56_left_up*cos_q23_left_up_up - r22_from_q1_before_q6_left_up*sin_q23_left_up_up
-        )
-        # A4: its turn
-        axis_a4_left_up_up = nearest_period(offset_a4 + atan2(sin_q4_left_up_up, cos_q4_left_up_up)/DEGREE, near_a4)
-        # A5: its turn
-        axis_a5_left_up = nearest_period(offset_a5 + atan2(-radius_q6_left, -r23_from_q1_left)/DEGREE, near_a5)
-        # A6: its turn
-        axis_a6_left_up = nearest_period(offset_a6 + atan2(sin_q6_left_up, cos_q6_left_up)/DEGREE, near_a6)
-        refusal_right_up = select(sine_square_q3_right_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        # A2: its turn
-        axis_a2_right_up_up = nearest_period(
-            offset_a2 + atan2(sin_q2_right_up_up, cos_q2_right_up_up)/DEGREE, near_a2,
-        )
-        # A3: its turn
-        axis_a3_right_up_up = nearest_period(offset_a3 + atan2(sin_q3_right_up_up, cos_q3_right_up)/DEGREE, near_a3)
-        cos_q23_right_up_up = cos_q2_right_up_up*cos_q3_right_up - sin_q2_right_up_up*sin_q3_right_up_up
-        sin_q23_right_up_up = cos_q2_right_up_up*sin_q3_right_up_up + cos_q3_right_up*sin_q2_right_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_right_up_up = (
-            r22_from_q1_before_q6_right_up*cos_q23_right_up_up + r21_from_q1_before_q56_right_up*sin_q23_right_up_up
-        )
-        sin_q4_right_up_up = (
-            r21_from_q1_before_q56_right_up*cos_q23_right_up_up - r22_from_q1_before_q6_right_up*sin_q23_right_up_up
-        )
-        # A4: its turn
+        angle_q2_right_up_up = atan2(direction_y_q2_right_up_up, direction_x_q2_right_up_up)
+        axis_a2_right_up_up = nearest_period(offset_a2 + angle_q2_right_up_up/DEGREE, near_a2)  # A2: its turn
+        angle_q3_right_up_up = atan2(sin_q3_right_up_up, cos_q3_right_up)
+        axis_a3_right_up_up = nearest_period(offset_a3 + angle_q3_right_up_up/DEGREE, near_a3)  # A3: its turn
+        angle_with_q4_right_up = atan2(r21_from_q1_before_q56_right_up, r22_from_q1_before_q6_right_up)
+        # q4: what the sum q234 leaves; A4: its turn
         axis_a4_right_up_up = nearest_period(
-            offset_a4 + atan2(sin_q4_right_up_up, cos_q4_right_up_up)/DEGREE, near_a4,
+            offset_a4 + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up)/DEGREE, near_a4,
         )
         # A5: its turn
-        axis_a5_right_up = nearest_period(offset_a5 + atan2(-radius_q6_right, -r23_from_q1_right)/DEGREE, near_a5)
+        axis_a5_right_up = nearest_period(offset_a5 + atan2(-radius_q6_right, cos_q5_right)/DEGREE, near_a5)
         # A6: its turn
         axis_a6_right_up = nearest_period(offset_a6 + atan2(sin_q6_right_up, cos_q6_right_up)/DEGREE, near_a6)
-        # A2: its turn
-        axis_a2_left_down_up = nearest_period(
-            offset_a2 + atan2(sin_q2_left_down_up, cos_q2_left_down_up)/DEGREE, near_a2,
+        angle_q2_right_down_down = atan2(direction_y_q2_right_down_down, direction_x_q2_right_down_down)
+        axis_a2_right_down_down = nearest_period(offset_a2 + angle_q2_right_down_down/DEGREE, near_a2)  # A2: its turn
+        angle_q3_right_down_down = atan2(-sin_q3_right_up_down, cos_q3_right_down)
+        axis_a3_right_down_down = nearest_period(offset_a3 + angle_q3_right_down_down/DEGREE, near_a3)  # A3: its turn
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_down_down = nearest_period(
+            (offset_a4 + (angle_with_q4_right_down - angle_q2_right_down_down - angle_q3_right_down_down)/DEGREE),
+            near_a4,
         )
-        # A3: its turn
-        axis_a3_left_down_up = nearest_period(offset_a3 + atan2(-sin_q3_left_up_up, cos_q3_left_up)/DEGREE, near_a3)
-        cos_q23_left_down_up = cos_q2_left_down_up*cos_q3_left_up + sin_q2_left_down_up*sin_q3_left_up_up
-        sin_q23_left_down_up = cos_q3_left_up*sin_q2_left_down_up - cos_q2_left_down_up*sin_q3_left_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_left_down_up = (
-            r22_from_q1_before_q6_left_up*cos_q23_left_down_up + r21_from_q1_before_q56_left_up*sin_q23_left_down_up
-        )
-        sin_q4_left_down_up = (
-            r21_from_q1_before_q56_left_up*cos_q23_left_down_up - r22_from_q1_before_q6_left_up*sin_q23_left_down_up
-        )
-        # A4: its turn
-        axis_a4_left_down_up = nearest_period(
-            offset_a4 + atan2(sin_q4_left_down_up, cos_q4_left_down_up)/DEGREE, near_a4,
-        )
-        # A2: its turn
-        axis_a2_right_down_up = nearest_period(
-            offset_a2 + atan2(sin_q2_right_down_up, cos_q2_right_down_up)/DEGREE, near_a2,
-        )
-        # A3: its turn
-        axis_a3_right_down_up = nearest_period(
-            offset_a3 + atan2(-sin_q3_right_up_up, cos_q3_right_up)/DEGREE, near_a3,
-        )
-        cos_q23_right_down_up = cos_q2_right_down_up*cos_q3_right_up + sin_q2_right_down_up*sin_q3_right_up_up
-        sin_q23_right_down_up = cos_q3_right_up*sin_q2_right_down_up - cos_q2_right_down_up*sin_q3_right_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_right_down_up = (
-            r22_from_q1_before_q6_right_up*cos_q23_right_down_up
-            + r21_from_q1_before_q56_right_up*sin_q23_right_down_up
-        )
-        sin_q4_right_down_up = (
-            r21_from_q1_before_q56_right_up*cos_q23_right_down_up
-            - r22_from_q1_before_q6_right_up*sin_q23_right_down_up
-        )
-        # A4: its turn
+        angle_q2_right_down_up = atan2(direction_y_q2_right_down_up, direction_x_q2_right_down_up)
+        axis_a2_right_down_up = nearest_period(offset_a2 + angle_q2_right_down_up/DEGREE, near_a2)  # A2: its turn
+        angle_q3_right_down_up = atan2(-sin_q3_right_up_up, cos_q3_right_up)
+        axis_a3_right_down_up = nearest_period(offset_a3 + angle_q3_right_down_up/DEGREE, near_a3)  # A3: its turn
+        # q4: what the sum q234 leaves; A4: its turn
         axis_a4_right_down_up = nearest_period(
-            offset_a4 + atan2(sin_q4_right_down_up, cos_q4_right_down_up)/DEGREE, near_a4,
+            offset_a4 + (angle_with_q4_right_up - angle_q2_right_down_up - angle_q3_right_down_up)/DEGREE, near_a4,
         )
         return (
             (

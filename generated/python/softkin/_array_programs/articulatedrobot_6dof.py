@@ -256,13 +256,18 @@ class ArrayPrograms(Programs):
         )
         # q3: out of reach
         require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
         sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
-        cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
-        sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
+        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
         if everywhere(reach > 1e-11*machine_scale):
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+            arm_along_q2 = -effective_q3*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3*cos_swing_q3
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
             across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
@@ -275,8 +280,8 @@ class ArrayPrograms(Programs):
             sin_q2 = across_q2/length_q2
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+            arm_along_q2 = -effective_q3*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3*cos_swing_q3
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
             along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
             across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
@@ -288,6 +293,22 @@ class ArrayPrograms(Programs):
             # its reference where it is free
             cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
             sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
+        cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
+        sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
+        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(
+            absolute(turn_a3) > 0.0,
+            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+            open_a3,
+        )
+        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
         sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
         cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
@@ -296,48 +317,23 @@ class ArrayPrograms(Programs):
         # q4: direction and distance of a point
         radius_q4 = root(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         if everywhere(radius_q4 > 1e-11):
-            along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
-            cos_q4 = along_q4/radius_q4  # its reference where it is free
-            across_q4 = r23_from_q1*sigma_hand
-            sin_q4 = across_q4/radius_q4
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4 = -r13_from_q123*sigma_hand
+            direction_y_q4 = r23_from_q1*sigma_hand
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
-            length_q4 = select(radius_q4 > 1e-11, radius_q4, 1.0)
-            cos_q4 = select(radius_q4 > 1e-11, along_q4/length_q4, cos(free_a4))  # its reference where it is free
-            across_q4 = r23_from_q1*sigma_hand
-            sin_q4 = select(radius_q4 > 1e-11, across_q4/length_q4, sin(free_a4))
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4 = select(radius_q4 > 1e-11, -r13_from_q123*sigma_hand, cos(free_a4))
+            direction_y_q4 = select(radius_q4 > 1e-11, r23_from_q1*sigma_hand, sin(free_a4))
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_q4, cos_q4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = nearest_period(offset_a4 + atan2(direction_y_q4, direction_x_q4)/DEGREE, near_a4)  # A4: its turn
         q4_radius_of_q5 = radius_q4*sigma_hand
-        r23_from_q123 = -r13_from_q1*cos_q23 - r33*sin_q23
-        cos_q5 = -r23_from_q123  # q5: linear pair in the q4 radius and r23 equations
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
         near_a5 = select(
             absolute(turn_a5) > 0.0,
@@ -348,11 +344,11 @@ class ArrayPrograms(Programs):
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        r21_from_q1234 = -r21_from_q1*cos_q4 - r11_from_q123*sin_q4
+        r21_from_q1234 = -direction_x_q4*r21_from_q1 - direction_y_q4*r11_from_q123
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         r12_from_q1 = r12*cos_q1 + r22*sin_q1
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        r22_from_q1234 = -r22_from_q1*cos_q4 - r12_from_q123*sin_q4
+        r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
@@ -518,44 +514,40 @@ class ArrayPrograms(Programs):
             (effective_q3 + reach_front - a2)*(a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
             *(a2 + reach_front - effective_q3)/(swing_scale_q3*swing_scale_q3)
         )
+        refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # q3: out of reach
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        axis_a1_front = nearest_period(offset_a1 + atan2(sin_q1_front, cos_q1_front)/DEGREE, near_a1)  # A1: its turn
+        sin_swing_q3_front_up = root(sine_square_q3_front)
         cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
-        sin_swing_q3_front_down = -root(sine_square_q3_front)
-        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 - d4*sin_swing_q3_front_down/effective_q3
-        sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3 + d4*cos_swing_q3_front/effective_q3
-        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3 + d4*sin_swing_q3_front_down/effective_q3
-        sin_q3_front_up = d4*cos_swing_q3_front/effective_q3 - a3*sin_swing_q3_front_down/effective_q3
         if everywhere(reach_front > 1e-11*machine_scale):
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
+            arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up
+            arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
+            along_q2_front_down = arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+            across_q2_front_down = arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
             length_q2_squared_front_down = (
                 across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
             )
             length_q2_front_down = select(length_q2_squared_front_down > 0.0, root(length_q2_squared_front_down), 1.0)
             cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
             sin_q2_front_down = across_q2_front_down/length_q2_front_down
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = select(length_q2_squared_front_up > 0.0, root(length_q2_squared_front_up), 1.0)
-            cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
-            sin_q2_front_up = across_q2_front_up/length_q2_front_up
+            along_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
+            cos_q2_front_up = along_q2_front_up/length_q2_front_down  # its reference where it is free
+            across_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
+            sin_q2_front_up = across_q2_front_up/length_q2_front_down
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
+            arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up
+            arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
+            along_q2_front_down = arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+            across_q2_front_down = arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
             length_q2_squared_front_down = (
                 across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
             )
@@ -575,28 +567,38 @@ class ArrayPrograms(Programs):
                 across_q2_front_down/length_q2_front_down,
                 sin(free_a2),
             )
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = select(
-                (length_q2_squared_front_up > 0.0) & (reach_front > 1e-11*machine_scale),
-                root(length_q2_squared_front_up),
-                1.0,
-            )
+            along_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
             # its reference where it is free
             cos_q2_front_up = select(
                 reach_front > 1e-11*machine_scale,
-                along_q2_front_up/length_q2_front_up,
+                along_q2_front_up/length_q2_front_down,
                 cos(free_a2),
             )
+            across_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
             sin_q2_front_up = select(
                 reach_front > 1e-11*machine_scale,
-                across_q2_front_up/length_q2_front_up,
+                across_q2_front_up/length_q2_front_down,
                 sin(free_a2),
             )
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        # A2: its turn
+        axis_a2_front_down = nearest_period(offset_a2 + atan2(sin_q2_front_down, cos_q2_front_down)/DEGREE, near_a2)
+        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 + d4*sin_swing_q3_front_up/effective_q3
+        sin_q3_front_down = d4*cos_swing_q3_front/effective_q3 - a3*sin_swing_q3_front_up/effective_q3
+        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
+        near_a3 = select(
+            absolute(turn_a3) > 0.0,
+            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
+            open_a3,
+        )
+        # A3: its turn
+        axis_a3_front_down = nearest_period(offset_a3 + atan2(sin_q3_front_down, cos_q3_front_down)/DEGREE, near_a3)
         r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
         sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
         cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
@@ -607,35 +609,146 @@ class ArrayPrograms(Programs):
             r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
         )
         if everywhere(radius_q4_front_down > 1e-11):
-            cos_q4_front_down_down = -r13_from_q123_front_down/radius_q4_front_down  # its reference where it is free
-            sin_q4_front_down_down = r23_from_q1_front/radius_q4_front_down
-            cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
-            sin_q4_front_down_up = -sin_q4_front_down_down
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_front_down_down = -r13_from_q123_front_down
+            direction_y_q4_front_down_down = r23_from_q1_front
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_front_down_up = -direction_x_q4_front_down_down
+            direction_y_q4_front_down_up = -r23_from_q1_front
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            length_q4_front_down = select(radius_q4_front_down > 1e-11, radius_q4_front_down, 1.0)
-            # its reference where it is free
-            cos_q4_front_down_down = select(
-                radius_q4_front_down > 1e-11,
-                -r13_from_q123_front_down/length_q4_front_down,
-                cos(free_a4),
-            )
-            sin_q4_front_down_down = select(
-                radius_q4_front_down > 1e-11,
-                r23_from_q1_front/length_q4_front_down,
-                sin(free_a4),
-            )
-            # its reference where it is free
-            cos_q4_front_down_up = select(
-                radius_q4_front_down > 1e-11,
-                r13_from_q123_front_down/length_q4_front_down,
-                cos(free_a4),
-            )
-            sin_q4_front_down_up = select(
-                radius_q4_front_down > 1e-11,
-                -r23_from_q1_front/length_q4_front_down,
-                sin(free_a4),
-            )
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_front_down_down = select(radius_q4_front_down > 1e-11, -r13_from_q123_front_down, cos(free_a4))
+            direction_y_q4_front_down_down = select(radius_q4_front_down > 1e-11, r23_from_q1_front, sin(free_a4))
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_front_down_up = select(radius_q4_front_down > 1e-11, r13_from_q123_front_down, cos(free_a4))
+            direction_y_q4_front_down_up = select(radius_q4_front_down > 1e-11, -r23_from_q1_front, sin(free_a4))
+        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
+        near_a4 = select(
+            absolute(turn_a4) > 0.0,
+            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
+            open_a4,
+        )
+        # A4: its turn
+        axis_a4_front_down_down = nearest_period(
+            offset_a4 + atan2(direction_y_q4_front_down_down, direction_x_q4_front_down_down)/DEGREE, near_a4,
+        )
+        # q5: linear pair in the q4 radius and r23 equations
+        cos_q5_front_down = r13_from_q1_front*cos_q23_front_down + r33*sin_q23_front_down
+        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
+        near_a5 = select(
+            absolute(turn_a5) > 0.0,
+            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
+            open_a5,
+        )
+        # A5: its turn
+        axis_a5_front_down_down = nearest_period(
+            offset_a5 + atan2(radius_q4_front_down, cos_q5_front_down)/DEGREE, near_a5,
+        )
+        r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
+        r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
+        r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down
+        r21_from_q1234_front_down_down = (
+            -direction_x_q4_front_down_down*r21_from_q1_front
+            - direction_y_q4_front_down_down*r11_from_q123_front_down
+        )
+        r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front
+        r12_from_q1_front = r12*cos_q1_front + r22*sin_q1_front
+        r12_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down
+        r22_from_q1234_front_down_down = (
+            -direction_x_q4_front_down_down*r22_from_q1_front
+            - direction_y_q4_front_down_down*r12_from_q123_front_down
+        )
+        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
+        near_a6 = select(
+            absolute(turn_a6) > 0.0,
+            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
+            open_a6,
+        )
+        # A6: its turn
+        axis_a6_front_down_down = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down)/DEGREE, near_a6,
+        )
+        # A4: its turn
+        axis_a4_front_down_up = nearest_period(
+            offset_a4 + atan2(direction_y_q4_front_down_up, direction_x_q4_front_down_up)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_front_down_up = nearest_period(
+            offset_a5 + atan2(-radius_q4_front_down, cos_q5_front_down)/DEGREE, near_a5,
+        )
+        r21_from_q1234_front_down_up = (
+            -direction_x_q4_front_down_up*r21_from_q1_front - direction_y_q4_front_down_up*r11_from_q123_front_down
+        )
+        r22_from_q1234_front_down_up = (
+            -direction_x_q4_front_down_up*r22_from_q1_front - direction_y_q4_front_down_up*r12_from_q123_front_down
+        )
+        # A6: its turn
+        axis_a6_front_down_up = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up)/DEGREE, near_a6,
+        )
+        # A2: its turn
+        axis_a2_front_up = nearest_period(offset_a2 + atan2(sin_q2_front_up, cos_q2_front_up)/DEGREE, near_a2)
+        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3 - d4*sin_swing_q3_front_up/effective_q3
+        sin_q3_front_up = a3*sin_swing_q3_front_up/effective_q3 + d4*cos_swing_q3_front/effective_q3
+        # A3: its turn
+        axis_a3_front_up = nearest_period(offset_a3 + atan2(sin_q3_front_up, cos_q3_front_up)/DEGREE, near_a3)
+        sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up
+        cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up
+        r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up
+        # q4: direction and distance of a point
+        radius_q4_front_up = root(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
+        if everywhere(radius_q4_front_up > 1e-11):
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_front_up_down = -r13_from_q123_front_up
+            direction_y_q4_front_up_down = r23_from_q1_front
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_front_up_up = -direction_x_q4_front_up_down
+            direction_y_q4_front_up_up = -r23_from_q1_front
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_front_up_down = select(radius_q4_front_up > 1e-11, -r13_from_q123_front_up, cos(free_a4))
+            direction_y_q4_front_up_down = select(radius_q4_front_up > 1e-11, r23_from_q1_front, sin(free_a4))
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_front_up_up = select(radius_q4_front_up > 1e-11, r13_from_q123_front_up, cos(free_a4))
+            direction_y_q4_front_up_up = select(radius_q4_front_up > 1e-11, -r23_from_q1_front, sin(free_a4))
+        # A4: its turn
+        axis_a4_front_up_down = nearest_period(
+            offset_a4 + atan2(direction_y_q4_front_up_down, direction_x_q4_front_up_down)/DEGREE, near_a4,
+        )
+        # q5: linear pair in the q4 radius and r23 equations
+        cos_q5_front_up = r13_from_q1_front*cos_q23_front_up + r33*sin_q23_front_up
+        # A5: its turn
+        axis_a5_front_up_down = nearest_period(offset_a5 + atan2(radius_q4_front_up, cos_q5_front_up)/DEGREE, near_a5)
+        r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
+        r21_from_q1234_front_up_down = (
+            -direction_x_q4_front_up_down*r21_from_q1_front - direction_y_q4_front_up_down*r11_from_q123_front_up
+        )
+        r12_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up
+        r22_from_q1234_front_up_down = (
+            -direction_x_q4_front_up_down*r22_from_q1_front - direction_y_q4_front_up_down*r12_from_q123_front_up
+        )
+        # A6: its turn
+        axis_a6_front_up_down = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down)/DEGREE, near_a6,
+        )
+        # A4: its turn
+        axis_a4_front_up_up = nearest_period(
+            offset_a4 + atan2(direction_y_q4_front_up_up, direction_x_q4_front_up_up)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_front_up_up = nearest_period(offset_a5 + atan2(-radius_q4_front_up, cos_q5_front_up)/DEGREE, near_a5)
+        r21_from_q1234_front_up_up = (
+            -direction_x_q4_front_up_up*r21_from_q1_front - direction_y_q4_front_up_up*r11_from_q123_front_up
+        )
+        r22_from_q1234_front_up_up = (
+            -direction_x_q4_front_up_up*r22_from_q1_front - direction_y_q4_front_up_up*r12_from_q123_front_up
+        )
+        # A6: its turn
+        axis_a6_front_up_up = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up)/DEGREE, near_a6,
+        )
         wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
         reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -643,38 +756,32 @@ class ArrayPrograms(Programs):
             (effective_q3 + reach_back - a2)*(a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
             *(a2 + reach_back - effective_q3)/(swing_scale_q3*swing_scale_q3)
         )
+        refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # q3: out of reach
+        axis_a1_back = nearest_period(offset_a1 + atan2(sin_q1_back, cos_q1_back)/DEGREE, near_a1)  # A1: its turn
+        sin_swing_q3_back_up = root(sine_square_q3_back)
         cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
-        sin_swing_q3_back_down = -root(sine_square_q3_back)
-        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3 - d4*sin_swing_q3_back_down/effective_q3
-        sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3 + d4*cos_swing_q3_back/effective_q3
-        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3 + d4*sin_swing_q3_back_down/effective_q3
-        sin_q3_back_up = d4*cos_swing_q3_back/effective_q3 - a3*sin_swing_q3_back_down/effective_q3
         if everywhere(reach_back > 1e-11*machine_scale):
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
+            arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up
+            arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
+            along_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
             length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
             length_q2_back_down = select(length_q2_squared_back_down > 0.0, root(length_q2_squared_back_down), 1.0)
             cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
             sin_q2_back_down = across_q2_back_down/length_q2_back_down
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = select(length_q2_squared_back_up > 0.0, root(length_q2_squared_back_up), 1.0)
-            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
-            sin_q2_back_up = across_q2_back_up/length_q2_back_up
+            along_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
+            cos_q2_back_up = along_q2_back_up/length_q2_back_down  # its reference where it is free
+            across_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
+            sin_q2_back_up = across_q2_back_up/length_q2_back_down
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
+            arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up
+            arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
+            along_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
             length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
             length_q2_back_down = select(
                 (length_q2_squared_back_down > 0.0) & (reach_back > 1e-11*machine_scale),
@@ -692,20 +799,18 @@ class ArrayPrograms(Programs):
                 across_q2_back_down/length_q2_back_down,
                 sin(free_a2),
             )
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = select(
-                (length_q2_squared_back_up > 0.0) & (reach_back > 1e-11*machine_scale),
-                root(length_q2_squared_back_up),
-                1.0,
-            )
+            along_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
             # its reference where it is free
-            cos_q2_back_up = select(reach_back > 1e-11*machine_scale, along_q2_back_up/length_q2_back_up, cos(free_a2))
-            sin_q2_back_up = select(reach_back > 1e-11*machine_scale, across_q2_back_up/length_q2_back_up, sin(free_a2))
+            cos_q2_back_up = select(reach_back > 1e-11*machine_scale, along_q2_back_up/length_q2_back_down, cos(free_a2))
+            across_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
+            sin_q2_back_up = select(reach_back > 1e-11*machine_scale, across_q2_back_up/length_q2_back_down, sin(free_a2))
+        # A2: its turn
+        axis_a2_back_down = nearest_period(offset_a2 + atan2(sin_q2_back_down, cos_q2_back_down)/DEGREE, near_a2)
+        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3 + d4*sin_swing_q3_back_up/effective_q3
+        sin_q3_back_down = d4*cos_swing_q3_back/effective_q3 - a3*sin_swing_q3_back_up/effective_q3
+        # A3: its turn
+        axis_a3_back_down = nearest_period(offset_a3 + atan2(sin_q3_back_down, cos_q3_back_down)/DEGREE, near_a3)
         r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
         sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
         cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
@@ -716,287 +821,122 @@ class ArrayPrograms(Programs):
             r13_from_q123_back_down*r13_from_q123_back_down + r23_from_q1_back*r23_from_q1_back
         )
         if everywhere(radius_q4_back_down > 1e-11):
-            cos_q4_back_down_down = -r13_from_q123_back_down/radius_q4_back_down  # its reference where it is free
-            sin_q4_back_down_down = r23_from_q1_back/radius_q4_back_down
-            cos_q4_back_down_up = -cos_q4_back_down_down  # its reference where it is free
-            sin_q4_back_down_up = -sin_q4_back_down_down
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_back_down_down = -r13_from_q123_back_down
+            direction_y_q4_back_down_down = r23_from_q1_back
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_back_down_up = -direction_x_q4_back_down_down
+            direction_y_q4_back_down_up = -r23_from_q1_back
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            length_q4_back_down = select(radius_q4_back_down > 1e-11, radius_q4_back_down, 1.0)
-            # its reference where it is free
-            cos_q4_back_down_down = select(
-                radius_q4_back_down > 1e-11,
-                -r13_from_q123_back_down/length_q4_back_down,
-                cos(free_a4),
-            )
-            sin_q4_back_down_down = select(
-                radius_q4_back_down > 1e-11,
-                r23_from_q1_back/length_q4_back_down,
-                sin(free_a4),
-            )
-            # its reference where it is free
-            cos_q4_back_down_up = select(
-                radius_q4_back_down > 1e-11,
-                r13_from_q123_back_down/length_q4_back_down,
-                cos(free_a4),
-            )
-            sin_q4_back_down_up = select(radius_q4_back_down > 1e-11, -r23_from_q1_back/length_q4_back_down, sin(free_a4))
-        sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up
-        cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up
-        r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up
-        # q4: direction and distance of a point
-        radius_q4_front_up = root(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
-        if everywhere(radius_q4_front_up > 1e-11):
-            cos_q4_front_up_down = -r13_from_q123_front_up/radius_q4_front_up  # its reference where it is free
-            sin_q4_front_up_down = r23_from_q1_front/radius_q4_front_up
-            cos_q4_front_up_up = -cos_q4_front_up_down  # its reference where it is free
-            sin_q4_front_up_up = -sin_q4_front_up_down
-        else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            length_q4_front_up = select(radius_q4_front_up > 1e-11, radius_q4_front_up, 1.0)
-            # its reference where it is free
-            cos_q4_front_up_down = select(
-                radius_q4_front_up > 1e-11,
-                -r13_from_q123_front_up/length_q4_front_up,
-                cos(free_a4),
-            )
-            sin_q4_front_up_down = select(radius_q4_front_up > 1e-11, r23_from_q1_front/length_q4_front_up, sin(free_a4))
-            # its reference where it is free
-            cos_q4_front_up_up = select(
-                radius_q4_front_up > 1e-11,
-                r13_from_q123_front_up/length_q4_front_up,
-                cos(free_a4),
-            )
-            sin_q4_front_up_up = select(radius_q4_front_up > 1e-11, -r23_from_q1_front/length_q4_front_up, sin(free_a4))
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_back_down_down = select(radius_q4_back_down > 1e-11, -r13_from_q123_back_down, cos(free_a4))
+            direction_y_q4_back_down_down = select(radius_q4_back_down > 1e-11, r23_from_q1_back, sin(free_a4))
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_back_down_up = select(radius_q4_back_down > 1e-11, r13_from_q123_back_down, cos(free_a4))
+            direction_y_q4_back_down_up = select(radius_q4_back_down > 1e-11, -r23_from_q1_back, sin(free_a4))
+        # A4: its turn
+        axis_a4_back_down_down = nearest_period(
+            offset_a4 + atan2(direction_y_q4_back_down_down, direction_x_q4_back_down_down)/DEGREE, near_a4,
+        )
+        # q5: linear pair in the q4 radius and r23 equations
+        cos_q5_back_down = r13_from_q1_back*cos_q23_back_down + r33*sin_q23_back_down
+        # A5: its turn
+        axis_a5_back_down_down = nearest_period(
+            offset_a5 + atan2(radius_q4_back_down, cos_q5_back_down)/DEGREE, near_a5,
+        )
+        r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
+        r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
+        r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
+        r21_from_q1234_back_down_down = (
+            -direction_x_q4_back_down_down*r21_from_q1_back - direction_y_q4_back_down_down*r11_from_q123_back_down
+        )
+        r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back
+        r12_from_q1_back = r12*cos_q1_back + r22*sin_q1_back
+        r12_from_q123_back_down = r32*cos_q23_back_down - r12_from_q1_back*sin_q23_back_down
+        r22_from_q1234_back_down_down = (
+            -direction_x_q4_back_down_down*r22_from_q1_back - direction_y_q4_back_down_down*r12_from_q123_back_down
+        )
+        # A6: its turn
+        axis_a6_back_down_down = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down)/DEGREE, near_a6,
+        )
+        # A4: its turn
+        axis_a4_back_down_up = nearest_period(
+            offset_a4 + atan2(direction_y_q4_back_down_up, direction_x_q4_back_down_up)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_back_down_up = nearest_period(
+            offset_a5 + atan2(-radius_q4_back_down, cos_q5_back_down)/DEGREE, near_a5,
+        )
+        r21_from_q1234_back_down_up = (
+            -direction_x_q4_back_down_up*r21_from_q1_back - direction_y_q4_back_down_up*r11_from_q123_back_down
+        )
+        r22_from_q1234_back_down_up = (
+            -direction_x_q4_back_down_up*r22_from_q1_back - direction_y_q4_back_down_up*r12_from_q123_back_down
+        )
+        # A6: its turn
+        axis_a6_back_down_up = nearest_period(
+            offset_a6 + atan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up)/DEGREE, near_a6,
+        )
+        # A2: its turn
+        axis_a2_back_up = nearest_period(offset_a2 + atan2(sin_q2_back_up, cos_q2_back_up)/DEGREE, near_a2)
+        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3 - d4*sin_swing_q3_back_up/effective_q3
+        sin_q3_back_up = a3*sin_swing_q3_back_up/effective_q3 + d4*cos_swing_q3_back/effective_q3
+        # A3: its turn
+        axis_a3_back_up = nearest_period(offset_a3 + atan2(sin_q3_back_up, cos_q3_back_up)/DEGREE, near_a3)
         sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up
         cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up
         r13_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up
         # q4: direction and distance of a point
         radius_q4_back_up = root(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
         if everywhere(radius_q4_back_up > 1e-11):
-            cos_q4_back_up_down = -r13_from_q123_back_up/radius_q4_back_up  # its reference where it is free
-            sin_q4_back_up_down = r23_from_q1_back/radius_q4_back_up
-            cos_q4_back_up_up = -cos_q4_back_up_down  # its reference where it is free
-            sin_q4_back_up_up = -sin_q4_back_up_down
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_back_up_down = -r13_from_q123_back_up
+            direction_y_q4_back_up_down = r23_from_q1_back
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_back_up_up = -direction_x_q4_back_up_down
+            direction_y_q4_back_up_up = -r23_from_q1_back
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            length_q4_back_up = select(radius_q4_back_up > 1e-11, radius_q4_back_up, 1.0)
-            # its reference where it is free
-            cos_q4_back_up_down = select(
-                radius_q4_back_up > 1e-11,
-                -r13_from_q123_back_up/length_q4_back_up,
-                cos(free_a4),
-            )
-            sin_q4_back_up_down = select(radius_q4_back_up > 1e-11, r23_from_q1_back/length_q4_back_up, sin(free_a4))
-            # its reference where it is free
-            cos_q4_back_up_up = select(radius_q4_back_up > 1e-11, r13_from_q123_back_up/length_q4_back_up, cos(free_a4))
-            sin_q4_back_up_up = select(radius_q4_back_up > 1e-11, -r23_from_q1_back/length_q4_back_up, sin(free_a4))
-        refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
-        axis_a1_front = nearest_period(offset_a1 + atan2(sin_q1_front, cos_q1_front)/DEGREE, near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
-        # A2: its turn
-        axis_a2_front_down = nearest_period(offset_a2 + atan2(sin_q2_front_down, cos_q2_front_down)/DEGREE, near_a2)
-        open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
-        near_a3 = select(
-            absolute(turn_a3) > 0.0,
-            select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-            open_a3,
-        )
-        # A3: its turn
-        axis_a3_front_down = nearest_period(offset_a3 + atan2(sin_q3_front_down, cos_q3_front_down)/DEGREE, near_a3)
-        open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
-        near_a4 = select(
-            absolute(turn_a4) > 0.0,
-            select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
-            open_a4,
-        )
-        # A4: its turn
-        axis_a4_front_down_down = nearest_period(
-            offset_a4 + atan2(sin_q4_front_down_down, cos_q4_front_down_down)/DEGREE, near_a4,
-        )
-        r23_from_q123_front_down = -r13_from_q1_front*cos_q23_front_down - r33*sin_q23_front_down
-        open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
-        near_a5 = select(
-            absolute(turn_a5) > 0.0,
-            select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
-            open_a5,
-        )
-        # A5: its turn
-        axis_a5_front_down_down = nearest_period(
-            offset_a5 + atan2(radius_q4_front_down, -r23_from_q123_front_down)/DEGREE, near_a5,
-        )
-        r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
-        r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
-        r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down
-        r21_from_q1234_front_down_down = (
-            -r21_from_q1_front*cos_q4_front_down_down - r11_from_q123_front_down*sin_q4_front_down_down
-        )
-        r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front
-        r12_from_q1_front = r12*cos_q1_front + r22*sin_q1_front
-        r12_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down
-        r22_from_q1234_front_down_down = (
-            -r22_from_q1_front*cos_q4_front_down_down - r12_from_q123_front_down*sin_q4_front_down_down
-        )
-        open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
-        near_a6 = select(
-            absolute(turn_a6) > 0.0,
-            select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
-            open_a6,
-        )
-        # A6: its turn
-        axis_a6_front_down_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down)/DEGREE, near_a6,
-        )
-        refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        axis_a1_back = nearest_period(offset_a1 + atan2(sin_q1_back, cos_q1_back)/DEGREE, near_a1)  # A1: its turn
-        # A2: its turn
-        axis_a2_back_down = nearest_period(offset_a2 + atan2(sin_q2_back_down, cos_q2_back_down)/DEGREE, near_a2)
-        # A3: its turn
-        axis_a3_back_down = nearest_period(offset_a3 + atan2(sin_q3_back_down, cos_q3_back_down)/DEGREE, near_a3)
-        # A4: its turn
-        axis_a4_back_down_down = nearest_period(
-            offset_a4 + atan2(sin_q4_back_down_down, cos_q4_back_down_down)/DEGREE, near_a4,
-        )
-        r23_from_q123_back_down = -r13_from_q1_back*cos_q23_back_down - r33*sin_q23_back_down
-        # A5: its turn
-        axis_a5_back_down_down = nearest_period(
-            offset_a5 + atan2(radius_q4_back_down, -r23_from_q123_back_down)/DEGREE, near_a5,
-        )
-        r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
-        r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
-        r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
-        r21_from_q1234_back_down_down = (
-            -r21_from_q1_back*cos_q4_back_down_down - r11_from_q123_back_down*sin_q4_back_down_down
-        )
-        r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back
-        r12_from_q1_back = r12*cos_q1_back + r22*sin_q1_back
-        r12_from_q123_back_down = r32*cos_q23_back_down - r12_from_q1_back*sin_q23_back_down
-        r22_from_q1234_back_down_down = (
-            -r22_from_q1_back*cos_q4_back_down_down - r12_from_q123_back_down*sin_q4_back_down_down
-        )
-        # A6: its turn
-        axis_a6_back_down_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down)/DEGREE, near_a6,
-        )
-        # A2: its turn
-        axis_a2_front_up = nearest_period(offset_a2 + atan2(sin_q2_front_up, cos_q2_front_up)/DEGREE, near_a2)
-        # A3: its turn
-        axis_a3_front_up = nearest_period(offset_a3 + atan2(sin_q3_front_up, cos_q3_front_up)/DEGREE, near_a3)
-        # A4: its turn
-        axis_a4_front_up_down = nearest_period(
-            offset_a4 + atan2(sin_q4_front_up_down, cos_q4_front_up_down)/DEGREE, near_a4,
-        )
-        r23_from_q123_front_up = -r13_from_q1_front*cos_q23_front_up - r33*sin_q23_front_up
-        # A5: its turn
-        axis_a5_front_up_down = nearest_period(
-            offset_a5 + atan2(radius_q4_front_up, -r23_from_q123_front_up)/DEGREE, near_a5,
-        )
-        r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
-        r21_from_q1234_front_up_down = (
-            -r21_from_q1_front*cos_q4_front_up_down - r11_from_q123_front_up*sin_q4_front_up_down
-        )
-        r12_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up
-        r22_from_q1234_front_up_down = (
-            -r22_from_q1_front*cos_q4_front_up_down - r12_from_q123_front_up*sin_q4_front_up_down
-        )
-        # A6: its turn
-        axis_a6_front_up_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down)/DEGREE, near_a6,
-        )
-        # A2: its turn
-        axis_a2_back_up = nearest_period(offset_a2 + atan2(sin_q2_back_up, cos_q2_back_up)/DEGREE, near_a2)
-        # A3: its turn
-        axis_a3_back_up = nearest_period(offset_a3 + atan2(sin_q3_back_up, cos_q3_back_up)/DEGREE, near_a3)
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_back_up_down = select(radius_q4_back_up > 1e-11, -r13_from_q123_back_up, cos(free_a4))
+            direction_y_q4_back_up_down = select(radius_q4_back_up > 1e-11, r23_from_q1_back, sin(free_a4))
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_back_up_up = select(radius_q4_back_up > 1e-11, r13_from_q123_back_up, cos(free_a4))
+            direction_y_q4_back_up_up = select(radius_q4_back_up > 1e-11, -r23_from_q1_back, sin(free_a4))
         # A4: its turn
         axis_a4_back_up_down = nearest_period(
-            offset_a4 + atan2(sin_q4_back_up_down, cos_q4_back_up_down)/DEGREE, near_a4,
+            offset_a4 + atan2(direction_y_q4_back_up_down, direction_x_q4_back_up_down)/DEGREE, near_a4,
         )
-        r23_from_q123_back_up = -r13_from_q1_back*cos_q23_back_up - r33*sin_q23_back_up
+        # q5: linear pair in the q4 radius and r23 equations
+        cos_q5_back_up = r13_from_q1_back*cos_q23_back_up + r33*sin_q23_back_up
         # A5: its turn
-        axis_a5_back_up_down = nearest_period(
-            offset_a5 + atan2(radius_q4_back_up, -r23_from_q123_back_up)/DEGREE, near_a5,
-        )
+        axis_a5_back_up_down = nearest_period(offset_a5 + atan2(radius_q4_back_up, cos_q5_back_up)/DEGREE, near_a5)
         r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
         r21_from_q1234_back_up_down = (
-            -r21_from_q1_back*cos_q4_back_up_down - r11_from_q123_back_up*sin_q4_back_up_down
+            -direction_x_q4_back_up_down*r21_from_q1_back - direction_y_q4_back_up_down*r11_from_q123_back_up
         )
         r12_from_q123_back_up = r32*cos_q23_back_up - r12_from_q1_back*sin_q23_back_up
         r22_from_q1234_back_up_down = (
-            -r22_from_q1_back*cos_q4_back_up_down - r12_from_q123_back_up*sin_q4_back_up_down
+            -direction_x_q4_back_up_down*r22_from_q1_back - direction_y_q4_back_up_down*r12_from_q123_back_up
         )
         # A6: its turn
         axis_a6_back_up_down = nearest_period(
             offset_a6 + atan2(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down)/DEGREE, near_a6,
         )
         # A4: its turn
-        axis_a4_front_down_up = nearest_period(
-            offset_a4 + atan2(sin_q4_front_down_up, cos_q4_front_down_up)/DEGREE, near_a4,
+        axis_a4_back_up_up = nearest_period(
+            offset_a4 + atan2(direction_y_q4_back_up_up, direction_x_q4_back_up_up)/DEGREE, near_a4,
         )
         # A5: its turn
-        axis_a5_front_down_up = nearest_period(
-            offset_a5 + atan2(-radius_q4_front_down, -r23_from_q123_front_down)/DEGREE, near_a5,
+        axis_a5_back_up_up = nearest_period(offset_a5 + atan2(-radius_q4_back_up, cos_q5_back_up)/DEGREE, near_a5)
+        r21_from_q1234_back_up_up = (
+            -direction_x_q4_back_up_up*r21_from_q1_back - direction_y_q4_back_up_up*r11_from_q123_back_up
         )
-        r21_from_q1234_front_down_up = (
-            -r21_from_q1_front*cos_q4_front_down_up - r11_from_q123_front_down*sin_q4_front_down_up
+        r22_from_q1234_back_up_up = (
+            -direction_x_q4_back_up_up*r22_from_q1_back - direction_y_q4_back_up_up*r12_from_q123_back_up
         )
-        r22_from_q1234_front_down_up = (
-            -r22_from_q1_front*cos_q4_front_down_up - r12_from_q123_front_down*sin_q4_front_down_up
-        )
-        # A6: its turn
-        axis_a6_front_down_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up)/DEGREE, near_a6,
-        )
-        # A4: its turn
-        axis_a4_back_down_up = nearest_period(
-            offset_a4 + atan2(sin_q4_back_down_up, cos_q4_back_down_up)/DEGREE, near_a4,
-        )
-        # A5: its turn
-        axis_a5_back_down_up = nearest_period(
-            offset_a5 + atan2(-radius_q4_back_down, -r23_from_q123_back_down)/DEGREE, near_a5,
-        )
-        r21_from_q1234_back_down_up = (
-            -r21_from_q1_back*cos_q4_back_down_up - r11_from_q123_back_down*sin_q4_back_down_up
-        )
-        r22_from_q1234_back_down_up = (
-            -r22_from_q1_back*cos_q4_back_down_up - r12_from_q123_back_down*sin_q4_back_down_up
-        )
-        # A6: its turn
-        axis_a6_back_down_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up)/DEGREE, near_a6,
-        )
-        # A4: its turn
-        axis_a4_front_up_up = nearest_period(
-            offset_a4 + atan2(sin_q4_front_up_up, cos_q4_front_up_up)/DEGREE, near_a4,
-        )
-        # A5: its turn
-        axis_a5_front_up_up = nearest_period(
-            offset_a5 + atan2(-radius_q4_front_up, -r23_from_q123_front_up)/DEGREE, near_a5,
-        )
-        r21_from_q1234_front_up_up = -r21_from_q1_front*cos_q4_front_up_up - r11_from_q123_front_up*sin_q4_front_up_up
-        r22_from_q1234_front_up_up = -r22_from_q1_front*cos_q4_front_up_up - r12_from_q123_front_up*sin_q4_front_up_up
-        # A6: its turn
-        axis_a6_front_up_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up)/DEGREE, near_a6,
-        )
-        # A4: its turn
-        axis_a4_back_up_up = nearest_period(offset_a4 + atan2(sin_q4_back_up_up, cos_q4_back_up_up)/DEGREE, near_a4)
-        # A5: its turn
-        axis_a5_back_up_up = nearest_period(
-            offset_a5 + atan2(-radius_q4_back_up, -r23_from_q123_back_up)/DEGREE, near_a5,
-        )
-        r21_from_q1234_back_up_up = -r21_from_q1_back*cos_q4_back_up_up - r11_from_q123_back_up*sin_q4_back_up_up
-        r22_from_q1234_back_up_up = -r22_from_q1_back*cos_q4_back_up_up - r12_from_q123_back_up*sin_q4_back_up_up
         # A6: its turn
         axis_a6_back_up_up = nearest_period(
             offset_a6 + atan2(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up)/DEGREE, near_a6,

@@ -253,11 +253,11 @@ class ArrayPrograms(Programs):
         pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
         rod_1_y_outward = y - pivot_1_y_outward
         cos_swing_a2 = (divisor_a2*divisor_a2 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a2
-        sin_swing_a2_outward = -root(sine_square_a2)
-        cos_a2_outward = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2_outward/divisor_a2
+        sin_swing_a2_inward = root(sine_square_a2)
+        cos_a2_outward = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2_inward/divisor_a2
         pivot_2_x_outward = displacement + inner_arm*cos_a2_outward - tcp_displacement  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
-        sin_a2_outward = span_2_x*sin_swing_a2_outward/divisor_a2 - y*cos_swing_a2/divisor_a2
+        sin_a2_outward = -y*cos_swing_a2/divisor_a2 - span_2_x*sin_swing_a2_inward/divisor_a2
         pivot_2_y_outward = -inner_arm*sin_a2_outward  # rod 2
         rod_2_y_outward = y - pivot_2_y_outward
         type2_arms_aligned_outward_outward = (
@@ -281,6 +281,19 @@ class ArrayPrograms(Programs):
         )
         # A2: its turn
         axis_a2_outward = nearest_period(offset_a2 + atan2(sin_a2_outward, cos_a2_outward)/DEGREE, near_a2)
+        cos_a2_inward = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2_inward/divisor_a2
+        pivot_2_x_inward = displacement + inner_arm*cos_a2_inward - tcp_displacement  # rod 2
+        rod_2_x_inward = x - pivot_2_x_inward
+        sin_a2_inward = span_2_x*sin_swing_a2_inward/divisor_a2 - y*cos_swing_a2/divisor_a2
+        pivot_2_y_inward = -inner_arm*sin_a2_inward  # rod 2
+        rod_2_y_inward = y - pivot_2_y_inward
+        type2_arms_aligned_outward_inward = (
+            assembly_sign*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)/(outer_arm*outer_arm)
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_outward_inward = select(type2_arms_aligned_outward_inward >= min_type2_margin, 0.0, 3.0)
+        # A2: its turn
+        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
         cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + y*sin_swing_a1_outward/divisor_a1
         pivot_1_x_inward = tcp_displacement - displacement - inner_arm*cos_a1_inward  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
@@ -294,19 +307,6 @@ class ArrayPrograms(Programs):
         refusal_inward_outward = select(type2_arms_aligned_inward_outward >= min_type2_margin, 0.0, 3.0)
         # A1: its turn
         axis_a1_inward = nearest_period(offset_a1 + atan2(sin_a1_inward, cos_a1_inward)/DEGREE, near_a1)
-        cos_a2_inward = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_inward = displacement + inner_arm*cos_a2_inward - tcp_displacement  # rod 2
-        rod_2_x_inward = x - pivot_2_x_inward
-        sin_a2_inward = -y*cos_swing_a2/divisor_a2 - span_2_x*sin_swing_a2_outward/divisor_a2
-        pivot_2_y_inward = -inner_arm*sin_a2_inward  # rod 2
-        rod_2_y_inward = y - pivot_2_y_inward
-        type2_arms_aligned_outward_inward = (
-            assembly_sign*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)/(outer_arm*outer_arm)
-        )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward = select(type2_arms_aligned_outward_inward >= min_type2_margin, 0.0, 3.0)
-        # A2: its turn
-        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
         type2_arms_aligned_inward_inward = (
             assembly_sign*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)/(outer_arm*outer_arm)
         )

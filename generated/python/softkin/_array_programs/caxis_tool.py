@@ -98,12 +98,9 @@ class ArrayPrograms(OrientationPrograms):
         heading_length = root(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
-        axis_c = nearest_period(offset_c + atan2(sin_heading, cos_heading)/DEGREE, near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + atan2(heading_across, heading_along)/DEGREE, near_c)  # C: its turn
         return (axis_c,), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -90,42 +90,41 @@ class ArrayPrograms(Programs):
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(status, (absolute(ref_phi) <= 1e9) & (absolute(ref_theta) <= 1e9), Status.BAD_INPUT)
         radius_theta = root(x*x + y*y)  # theta: direction and distance of a point
+        radius_phi = root(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        axis_r = offset_r + radius_phi
         if everywhere(radius_theta > 1e-11*machine_scale):
-            cos_theta = x/radius_theta  # its reference where it is free
-            sin_theta = y/radius_theta
+            direction_x_theta = x  # its reference where it is free
+            direction_y_theta = y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            length_theta = select(radius_theta > 1e-11*machine_scale, radius_theta, 1.0)
             # its reference where it is free
-            cos_theta = select(radius_theta > 1e-11*machine_scale, x/length_theta, cos(free_theta))
-            sin_theta = select(radius_theta > 1e-11*machine_scale, y/length_theta, sin(free_theta))
-        radius_phi = root(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        if everywhere(radius_phi > 1e-11*machine_scale):
-            cos_phi = z/radius_phi  # its reference where it is free
-            sin_phi = radius_theta/radius_phi
-        else:
-            free_phi = (ref_phi - offset_phi)*DEGREE
-            length_phi = select(radius_phi > 1e-11*machine_scale, radius_phi, 1.0)
-            # its reference where it is free
-            cos_phi = select(
-                radius_phi > 1e-11*machine_scale,
-                z/length_phi,
-                cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)),
-            )
-            sin_phi = select(
-                radius_phi > 1e-11*machine_scale,
-                radius_theta/length_phi,
-                sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)),
-            )
-        axis_r = offset_r + radius_phi
+            direction_x_theta = select(radius_theta > 1e-11*machine_scale, x, cos(free_theta))
+            direction_y_theta = select(radius_theta > 1e-11*machine_scale, y, sin(free_theta))
         open_theta = select(single_theta > 0.0, mid_theta, ref_theta)  # Theta: where its turn is open
         near_theta = select(
             absolute(turn_theta) > 0.0,
             select(turn_theta > 0.0, 360.0*turn_theta - 360.0, 360.0*turn_theta),
             open_theta,
         )
-        axis_theta = nearest_period(offset_theta + atan2(sin_theta, cos_theta)/DEGREE, near_theta)  # Theta: its turn
-        axis_phi = offset_phi + atan2(sin_phi, cos_phi)/DEGREE
+        # Theta: its turn
+        axis_theta = nearest_period(offset_theta + atan2(direction_y_theta, direction_x_theta)/DEGREE, near_theta)
+        if everywhere(radius_phi > 1e-11*machine_scale):
+            direction_x_phi = z  # its reference where it is free
+            direction_y_phi = radius_theta
+        else:
+            free_phi = (ref_phi - offset_phi)*DEGREE
+            # its reference where it is free
+            direction_x_phi = select(
+                radius_phi > 1e-11*machine_scale,
+                z,
+                cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)),
+            )
+            direction_y_phi = select(
+                radius_phi > 1e-11*machine_scale,
+                radius_theta,
+                sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)),
+            )
+        axis_phi = offset_phi + atan2(direction_y_phi, direction_x_phi)/DEGREE
         return (axis_r, axis_theta, axis_phi), status
 
     def limits(self, axes: Reals) -> Codes:

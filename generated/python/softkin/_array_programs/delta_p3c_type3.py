@@ -484,8 +484,8 @@ class ArrayPrograms(Programs):
             (inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z - outer_arm_1*outer_arm_1)
             /swing_scale_a1
         )
-        sin_swing_a1_outward = -root(sine_square_a1)
-        cos_a1_outward = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1_outward/divisor_a1
+        sin_swing_a1_inward = root(sine_square_a1)
+        cos_a1_outward = along_a1*cos_swing_a1/divisor_a1 - z*sin_swing_a1_inward/divisor_a1
         # rod 1
         pivot_1_x_outward = (
             base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1_outward*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
@@ -496,15 +496,15 @@ class ArrayPrograms(Programs):
             base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1_outward*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
         )
         rod_1_y_outward = y - pivot_1_y_outward
-        sin_a1_outward = along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
+        sin_a1_outward = -along_a1*sin_swing_a1_inward/divisor_a1 - z*cos_swing_a1/divisor_a1
         pivot_1_z_outward = -inner_arm_1*sin_a1_outward  # rod 1
         rod_1_z_outward = z - pivot_1_z_outward
         cos_swing_a2 = (
             (inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z - outer_arm_2*outer_arm_2)
             /swing_scale_a2
         )
-        sin_swing_a2_outward = -root(sine_square_a2)
-        cos_a2_outward = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2_outward/divisor_a2
+        sin_swing_a2_inward = root(sine_square_a2)
+        cos_a2_outward = along_a2*cos_swing_a2/divisor_a2 - z*sin_swing_a2_inward/divisor_a2
         # rod 2
         pivot_2_x_outward = (
             base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2_outward*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
@@ -515,15 +515,15 @@ class ArrayPrograms(Programs):
             base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2_outward*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
         )
         rod_2_y_outward = y - pivot_2_y_outward
-        sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
+        sin_a2_outward = -along_a2*sin_swing_a2_inward/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z_outward = -inner_arm_2*sin_a2_outward  # rod 2
         rod_2_z_outward = z - pivot_2_z_outward
         cos_swing_a3 = (
             (inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z - outer_arm_3*outer_arm_3)
             /swing_scale_a3
         )
-        sin_swing_a3_outward = -root(sine_square_a3)
-        cos_a3_outward = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3_outward/divisor_a3
+        sin_swing_a3_inward = root(sine_square_a3)
+        cos_a3_outward = along_a3*cos_swing_a3/divisor_a3 - z*sin_swing_a3_inward/divisor_a3
         # rod 3
         pivot_3_x_outward = (
             base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3_outward*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
@@ -534,7 +534,7 @@ class ArrayPrograms(Programs):
             base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3_outward*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
         )
         rod_3_y_outward = y - pivot_3_y_outward
-        sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
+        sin_a3_outward = -along_a3*sin_swing_a3_inward/divisor_a3 - z*cos_swing_a3/divisor_a3
         pivot_3_z_outward = -inner_arm_3*sin_a3_outward  # rod 3
         rod_3_z_outward = z - pivot_3_z_outward
         type2_rods_coplanar_outward_outward_outward = (
@@ -574,78 +574,7 @@ class ArrayPrograms(Programs):
         )
         # A3: its turn
         axis_a3_outward = nearest_period(offset_a3 + atan2(sin_a3_outward, cos_a3_outward)/DEGREE, near_a3)
-        cos_a1_inward = along_a1*cos_swing_a1/divisor_a1 - z*sin_swing_a1_outward/divisor_a1
-        # rod 1
-        pivot_1_x_inward = (
-            base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1_inward*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
-        )
-        rod_1_x_inward = x - pivot_1_x_inward
-        # rod 1
-        pivot_1_y_inward = (
-            base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1_inward*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
-        )
-        rod_1_y_inward = y - pivot_1_y_inward
-        sin_a1_inward = -along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
-        pivot_1_z_inward = -inner_arm_1*sin_a1_inward  # rod 1
-        rod_1_z_inward = z - pivot_1_z_inward
-        type2_rods_coplanar_inward_outward_outward = (
-            assembly_sign
-            *(
-                rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_y_inward*rod_2_z_outward*rod_3_x_outward
-                + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
-                - rod_1_y_inward*rod_2_x_outward*rod_3_z_outward - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward
-            )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_outward = select(
-            type2_rods_coplanar_inward_outward_outward >= min_type2_margin, 0.0, 3.0,
-        )
-        # A1: its turn
-        axis_a1_inward = nearest_period(offset_a1 + atan2(sin_a1_inward, cos_a1_inward)/DEGREE, near_a1)
-        cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - z*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_x_inward = (
-            base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2_inward*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
-        )
-        rod_2_x_inward = x - pivot_2_x_inward
-        # rod 2
-        pivot_2_y_inward = (
-            base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2_inward*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
-        )
-        rod_2_y_inward = y - pivot_2_y_inward
-        sin_a2_inward = -along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
-        pivot_2_z_inward = -inner_arm_2*sin_a2_inward  # rod 2
-        rod_2_z_inward = z - pivot_2_z_inward
-        type2_rods_coplanar_outward_inward_outward = (
-            assembly_sign
-            *(
-                rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_y_outward*rod_2_z_inward*rod_3_x_outward
-                + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
-                - rod_1_y_outward*rod_2_x_inward*rod_3_z_outward - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward
-            )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_outward = select(
-            type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0.0, 3.0,
-        )
-        # A2: its turn
-        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
-        type2_rods_coplanar_inward_inward_outward = (
-            assembly_sign
-            *(
-                rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_y_inward*rod_2_z_inward*rod_3_x_outward
-                + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
-                - rod_1_y_inward*rod_2_x_inward*rod_3_z_outward - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward
-            )
-            /(outer_arm_1*outer_arm_2*outer_arm_3)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_outward = select(
-            type2_rods_coplanar_inward_inward_outward >= min_type2_margin, 0.0, 3.0,
-        )
-        cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - z*sin_swing_a3_outward/divisor_a3
+        cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3_inward/divisor_a3
         # rod 3
         pivot_3_x_inward = (
             base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3_inward*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
@@ -656,7 +585,7 @@ class ArrayPrograms(Programs):
             base_radius_3*sin_azimuth_3 + inner_arm_3*cos_a3_inward*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
         )
         rod_3_y_inward = y - pivot_3_y_inward
-        sin_a3_inward = -along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
+        sin_a3_inward = along_a3*sin_swing_a3_inward/divisor_a3 - z*cos_swing_a3/divisor_a3
         pivot_3_z_inward = -inner_arm_3*sin_a3_inward  # rod 3
         rod_3_z_inward = z - pivot_3_z_inward
         type2_rods_coplanar_outward_outward_inward = (
@@ -674,6 +603,77 @@ class ArrayPrograms(Programs):
         )
         # A3: its turn
         axis_a3_inward = nearest_period(offset_a3 + atan2(sin_a3_inward, cos_a3_inward)/DEGREE, near_a3)
+        cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2_inward/divisor_a2
+        # rod 2
+        pivot_2_x_inward = (
+            base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2_inward*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+        )
+        rod_2_x_inward = x - pivot_2_x_inward
+        # rod 2
+        pivot_2_y_inward = (
+            base_radius_2*sin_azimuth_2 + inner_arm_2*cos_a2_inward*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+        )
+        rod_2_y_inward = y - pivot_2_y_inward
+        sin_a2_inward = along_a2*sin_swing_a2_inward/divisor_a2 - z*cos_swing_a2/divisor_a2
+        pivot_2_z_inward = -inner_arm_2*sin_a2_inward  # rod 2
+        rod_2_z_inward = z - pivot_2_z_inward
+        type2_rods_coplanar_outward_inward_outward = (
+            assembly_sign
+            *(
+                rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_y_outward*rod_2_z_inward*rod_3_x_outward
+                + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
+                - rod_1_y_outward*rod_2_x_inward*rod_3_z_outward - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_outward_inward_outward = select(
+            type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0.0, 3.0,
+        )
+        # A2: its turn
+        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
+        type2_rods_coplanar_outward_inward_inward = (
+            assembly_sign
+            *(
+                rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_y_outward*rod_2_z_inward*rod_3_x_inward
+                + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
+                - rod_1_y_outward*rod_2_x_inward*rod_3_z_inward - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_outward_inward_inward = select(
+            type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0.0, 3.0,
+        )
+        cos_a1_inward = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1_inward/divisor_a1
+        # rod 1
+        pivot_1_x_inward = (
+            base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1_inward*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
+        )
+        rod_1_x_inward = x - pivot_1_x_inward
+        # rod 1
+        pivot_1_y_inward = (
+            base_radius_1*sin_azimuth_1 + inner_arm_1*cos_a1_inward*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
+        )
+        rod_1_y_inward = y - pivot_1_y_inward
+        sin_a1_inward = along_a1*sin_swing_a1_inward/divisor_a1 - z*cos_swing_a1/divisor_a1
+        pivot_1_z_inward = -inner_arm_1*sin_a1_inward  # rod 1
+        rod_1_z_inward = z - pivot_1_z_inward
+        type2_rods_coplanar_inward_outward_outward = (
+            assembly_sign
+            *(
+                rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_y_inward*rod_2_z_outward*rod_3_x_outward
+                + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
+                - rod_1_y_inward*rod_2_x_outward*rod_3_z_outward - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward
+            )
+            /(outer_arm_1*outer_arm_2*outer_arm_3)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_inward_outward_outward = select(
+            type2_rods_coplanar_inward_outward_outward >= min_type2_margin, 0.0, 3.0,
+        )
+        # A1: its turn
+        axis_a1_inward = nearest_period(offset_a1 + atan2(sin_a1_inward, cos_a1_inward)/DEGREE, near_a1)
         type2_rods_coplanar_inward_outward_inward = (
             assembly_sign
             *(
@@ -687,18 +687,18 @@ class ArrayPrograms(Programs):
         refusal_inward_outward_inward = select(
             type2_rods_coplanar_inward_outward_inward >= min_type2_margin, 0.0, 3.0,
         )
-        type2_rods_coplanar_outward_inward_inward = (
+        type2_rods_coplanar_inward_inward_outward = (
             assembly_sign
             *(
-                rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_y_outward*rod_2_z_inward*rod_3_x_inward
-                + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
-                - rod_1_y_outward*rod_2_x_inward*rod_3_z_inward - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward
+                rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_y_inward*rod_2_z_inward*rod_3_x_outward
+                + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
+                - rod_1_y_inward*rod_2_x_inward*rod_3_z_outward - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward
             )
             /(outer_arm_1*outer_arm_2*outer_arm_3)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_inward = select(
-            type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0.0, 3.0,
+        refusal_inward_inward_outward = select(
+            type2_rods_coplanar_inward_inward_outward >= min_type2_margin, 0.0, 3.0,
         )
         type2_rods_coplanar_inward_inward_inward = (
             assembly_sign

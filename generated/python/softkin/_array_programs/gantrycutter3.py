@@ -123,13 +123,10 @@ class ArrayPrograms(Programs):
         axis_x = offset_x + x
         axis_y = offset_y + y
         axis_z = offset_z + z
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        sin_r = direction_r*sin_heading
+        sin_r = direction_r*heading_across
         open_r = select(single_r > 0.0, mid_r, ref_r)  # R: where its turn is open
         near_r = select(absolute(turn_r) > 0.0, select(turn_r > 0.0, 360.0*turn_r - 360.0, 360.0*turn_r), open_r)
-        axis_r = nearest_period(offset_r + atan2(sin_r, cos_heading)/DEGREE, near_r)  # R: its turn
+        axis_r = nearest_period(offset_r + atan2(sin_r, heading_along)/DEGREE, near_r)  # R: its turn
         return (axis_x, axis_y, axis_z, axis_r), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -133,30 +133,27 @@ class ArrayPrograms(Programs):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
-        r13_of_a = r13/tool_side
-        r23_of_a = r23/tool_side
-        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        if everywhere(radius_a > 1e-11):
-            along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
-            cos_a = along_a/radius_a  # its reference where it is free
-            across_a = r23_of_a*sigma_roll
-            sin_a = across_a/radius_a
-        else:
-            free_a = (ref_a - offset_a)*DEGREE
-            along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
-            length_a = select(radius_a > 1e-11, radius_a, 1.0)
-            cos_a = select(radius_a > 1e-11, along_a/length_a, cos(free_a))  # its reference where it is free
-            across_a = r23_of_a*sigma_roll
-            sin_a = select(radius_a > 1e-11, across_a/length_a, sin(free_a))
         wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length*tool_side
         axis_y = offset_y + wrist_y
         wrist_z = z - r33*tool_length*tool_side
         axis_z = offset_z + wrist_z
+        r13_of_a = r13/tool_side
+        r23_of_a = r23/tool_side
+        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        if everywhere(radius_a > 1e-11):
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a = r13_of_a*sigma_roll
+            direction_y_a = r23_of_a*sigma_roll
+        else:
+            free_a = (ref_a - offset_a)*DEGREE
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a = select(radius_a > 1e-11, r13_of_a*sigma_roll, cos(free_a))
+            direction_y_a = select(radius_a > 1e-11, r23_of_a*sigma_roll, sin(free_a))
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        axis_a = nearest_period(offset_a + atan2(sin_a, cos_a)/DEGREE, near_a)  # A: its turn
+        axis_a = nearest_period(offset_a + atan2(direction_y_a, direction_x_a)/DEGREE, near_a)  # A: its turn
         a_radius_of_b = radius_a*sigma_roll
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
@@ -240,36 +237,43 @@ class ArrayPrograms(Programs):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
-        r13_of_a = r13/tool_side
-        r23_of_a = r23/tool_side
-        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        if everywhere(radius_a > 1e-11):
-            cos_a_positive = r13_of_a/radius_a  # its reference where it is free
-            sin_a_positive = r23_of_a/radius_a
-            cos_a_negative = -cos_a_positive  # its reference where it is free
-            sin_a_negative = -sin_a_positive
-        else:
-            free_a = (ref_a - offset_a)*DEGREE
-            length_a = select(radius_a > 1e-11, radius_a, 1.0)
-            cos_a_positive = select(radius_a > 1e-11, r13_of_a/length_a, cos(free_a))  # its reference where it is free
-            sin_a_positive = select(radius_a > 1e-11, r23_of_a/length_a, sin(free_a))
-            cos_a_negative = select(radius_a > 1e-11, -r13_of_a/length_a, cos(free_a))  # its reference where it is free
-            sin_a_negative = select(radius_a > 1e-11, -r23_of_a/length_a, sin(free_a))
         wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length*tool_side
         axis_y = offset_y + wrist_y
         wrist_z = z - r33*tool_length*tool_side
         axis_z = offset_z + wrist_z
+        r13_of_a = r13/tool_side
+        r23_of_a = r23/tool_side
+        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        if everywhere(radius_a > 1e-11):
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_positive = r13_of_a
+            direction_y_a_positive = r23_of_a
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_negative = -r13_of_a
+            direction_y_a_negative = -r23_of_a
+        else:
+            free_a = (ref_a - offset_a)*DEGREE
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_positive = select(radius_a > 1e-11, r13_of_a, cos(free_a))
+            direction_y_a_positive = select(radius_a > 1e-11, r23_of_a, sin(free_a))
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_negative = select(radius_a > 1e-11, -r13_of_a, cos(free_a))
+            direction_y_a_negative = select(radius_a > 1e-11, -r23_of_a, sin(free_a))
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
         # A: its turn
-        axis_a_positive = nearest_period(offset_a + atan2(sin_a_positive, cos_a_positive)/DEGREE, near_a)
+        axis_a_positive = nearest_period(
+            offset_a + atan2(direction_y_a_positive, direction_x_a_positive)/DEGREE, near_a,
+        )
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
         axis_b_positive = nearest_period(offset_b + atan2(radius_a, r33)/DEGREE, near_b)  # B: its turn
         # A: its turn
-        axis_a_negative = nearest_period(offset_a + atan2(sin_a_negative, cos_a_negative)/DEGREE, near_a)
+        axis_a_negative = nearest_period(
+            offset_a + atan2(direction_y_a_negative, direction_x_a_negative)/DEGREE, near_a,
+        )
         axis_b_negative = nearest_period(offset_b + atan2(-radius_a, r33)/DEGREE, near_b)  # B: its turn
         return (
             ((axis_x, axis_y, axis_z, axis_a_positive, axis_b_positive), refused(status, 0.0)),

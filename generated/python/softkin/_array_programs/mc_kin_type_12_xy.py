@@ -412,9 +412,9 @@ class ArrayPrograms(Programs):
         cos_swing_a1 = (
             (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
         )
-        sin_swing_a1_left = -root(sine_square_a1)
-        sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1_left/divisor_a1
-        cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1_left/divisor_a1
+        sin_swing_a1_right = root(sine_square_a1)
+        sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 - span_upper_y*sin_swing_a1_right/divisor_a1
+        cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_right/divisor_a1
         # rod rear
         span_rear_x = (
             link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
@@ -487,18 +487,18 @@ class ArrayPrograms(Programs):
             )
             /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2_left*swing_scale_a2_left)
         )
-        sin_swing_a2_left_left = -root(sine_square_a2_left)
+        sin_swing_a2_left_right = root(sine_square_a2_left)
         cos_a2_left_left = (
-            along_a2_left*cos_swing_a2_left/divisor_a2_left - across_a2_left*sin_swing_a2_left_left/divisor_a2_left
+            across_a2_left*sin_swing_a2_left_right/divisor_a2_left + along_a2_left*cos_swing_a2_left/divisor_a2_left
         )
         sin_a2_left_left = (
-            across_a2_left*cos_swing_a2_left/divisor_a2_left + along_a2_left*sin_swing_a2_left_left/divisor_a2_left
+            across_a2_left*cos_swing_a2_left/divisor_a2_left - along_a2_left*sin_swing_a2_left_right/divisor_a2_left
         )
         cos_a2_left_right = (
-            across_a2_left*sin_swing_a2_left_left/divisor_a2_left + along_a2_left*cos_swing_a2_left/divisor_a2_left
+            along_a2_left*cos_swing_a2_left/divisor_a2_left - across_a2_left*sin_swing_a2_left_right/divisor_a2_left
         )
         sin_a2_left_right = (
-            across_a2_left*cos_swing_a2_left/divisor_a2_left - along_a2_left*sin_swing_a2_left_left/divisor_a2_left
+            across_a2_left*cos_swing_a2_left/divisor_a2_left + along_a2_left*sin_swing_a2_left_right/divisor_a2_left
         )
         if everywhere((sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5)):
             pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
@@ -724,8 +724,25 @@ class ArrayPrograms(Programs):
                 refusal_left,
                 select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0),
             )
-        sin_a1_right = span_upper_x*cos_swing_a1/divisor_a1 - span_upper_y*sin_swing_a1_left/divisor_a1
-        cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_left/divisor_a1
+        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
+        near_a1 = select(
+            absolute(turn_a1) > 0.0,
+            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
+            open_a1,
+        )
+        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
+        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
+        near_a2 = select(
+            absolute(turn_a2) > 0.0,
+            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
+            open_a2,
+        )
+        # A2: its turn
+        axis_a2_left_left = nearest_period(offset_a2 + atan2(sin_a2_left_left, cos_a2_left_left)/DEGREE, near_a2)
+        # A2: its turn
+        axis_a2_left_right = nearest_period(offset_a2 + atan2(sin_a2_left_right, cos_a2_left_right)/DEGREE, near_a2)
+        sin_a1_right = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1_right/divisor_a1
+        cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1_right/divisor_a1
         along_a2_right = (
             (
                 link_length_2*span_rear_x - link_length_1*link_length_2*sin_a1_right
@@ -788,22 +805,22 @@ class ArrayPrograms(Programs):
             )
             /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2_right*swing_scale_a2_right)
         )
-        sin_swing_a2_right_left = -root(sine_square_a2_right)
+        sin_swing_a2_right_right = root(sine_square_a2_right)
         cos_a2_right_left = (
-            along_a2_right*cos_swing_a2_right/divisor_a2_right
-            - across_a2_right*sin_swing_a2_right_left/divisor_a2_right
+            across_a2_right*sin_swing_a2_right_right/divisor_a2_right
+            + along_a2_right*cos_swing_a2_right/divisor_a2_right
         )
         sin_a2_right_left = (
             across_a2_right*cos_swing_a2_right/divisor_a2_right
-            + along_a2_right*sin_swing_a2_right_left/divisor_a2_right
+            - along_a2_right*sin_swing_a2_right_right/divisor_a2_right
         )
         cos_a2_right_right = (
-            across_a2_right*sin_swing_a2_right_left/divisor_a2_right
-            + along_a2_right*cos_swing_a2_right/divisor_a2_right
+            along_a2_right*cos_swing_a2_right/divisor_a2_right
+            - across_a2_right*sin_swing_a2_right_right/divisor_a2_right
         )
         sin_a2_right_right = (
             across_a2_right*cos_swing_a2_right/divisor_a2_right
-            - along_a2_right*sin_swing_a2_right_left/divisor_a2_right
+            + along_a2_right*sin_swing_a2_right_right/divisor_a2_right
         )
         if everywhere((sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5)):
             pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
@@ -1029,26 +1046,9 @@ class ArrayPrograms(Programs):
                 refusal_right,
                 select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0),
             )
-        open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
-        near_a1 = select(
-            absolute(turn_a1) > 0.0,
-            select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
-            open_a1,
-        )
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
-        open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
-        near_a2 = select(
-            absolute(turn_a2) > 0.0,
-            select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-            open_a2,
-        )
-        # A2: its turn
-        axis_a2_left_left = nearest_period(offset_a2 + atan2(sin_a2_left_left, cos_a2_left_left)/DEGREE, near_a2)
         axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
         # A2: its turn
         axis_a2_right_left = nearest_period(offset_a2 + atan2(sin_a2_right_left, cos_a2_right_left)/DEGREE, near_a2)
-        # A2: its turn
-        axis_a2_left_right = nearest_period(offset_a2 + atan2(sin_a2_left_right, cos_a2_left_right)/DEGREE, near_a2)
         # A2: its turn
         axis_a2_right_right = nearest_period(
             offset_a2 + atan2(sin_a2_right_right, cos_a2_right_right)/DEGREE, near_a2,

@@ -192,15 +192,6 @@ class ArrayPrograms(Programs):
         refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0)
         axis_a1_left = a1_left + offset_a1
         axis_a2_right = a2_right + offset_a2
-        a1_right = span_1_x + root(root_square_a1)
-        pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
-        rod_1_x_right = x - pivot_1_x_right
-        type2_arms_aligned_right_right = (
-            assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)/(arm_length_1*arm_length_2)
-        )
-        # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
-        axis_a1_right = a1_right + offset_a1
         a2_left = span_2_x - root(root_square_a2)
         pivot_2_x_left = a2_left - tcp_offset_2  # rod 2
         rod_2_x_left = x - pivot_2_x_left
@@ -210,6 +201,15 @@ class ArrayPrograms(Programs):
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0)
         axis_a2_left = a2_left + offset_a2
+        a1_right = span_1_x + root(root_square_a1)
+        pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
+        rod_1_x_right = x - pivot_1_x_right
+        type2_arms_aligned_right_right = (
+            assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)/(arm_length_1*arm_length_2)
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
+        axis_a1_right = a1_right + offset_a1
         type2_arms_aligned_right_left = (
             assembly_sign*(rod_1_x_right*span_2_y - rod_2_x_left*span_1_y)/(arm_length_1*arm_length_2)
         )

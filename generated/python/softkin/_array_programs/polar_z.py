@@ -81,16 +81,15 @@ class ArrayPrograms(Programs):
         require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
         radius_c = root(x*x + y*y)  # c: direction and distance of a point
         if everywhere(radius_c > 1e-11*machine_scale):
-            cos_c = x/radius_c  # its reference where it is free
-            sin_c = y/radius_c
+            direction_x_c = x  # its reference where it is free
+            direction_y_c = y
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            length_c = select(radius_c > 1e-11*machine_scale, radius_c, 1.0)
-            cos_c = select(radius_c > 1e-11*machine_scale, x/length_c, cos(free_c))  # its reference where it is free
-            sin_c = select(radius_c > 1e-11*machine_scale, y/length_c, sin(free_c))
+            direction_x_c = select(radius_c > 1e-11*machine_scale, x, cos(free_c))  # its reference where it is free
+            direction_y_c = select(radius_c > 1e-11*machine_scale, y, sin(free_c))
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
-        axis_c = nearest_period(offset_c + atan2(sin_c, cos_c)/DEGREE, near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + atan2(direction_y_c, direction_x_c)/DEGREE, near_c)  # C: its turn
         axis_r = offset_r + radius_c
         axis_z = offset_z + z
         return (axis_c, axis_r, axis_z), status

@@ -162,38 +162,6 @@ class ArrayPrograms(Programs):
         )
         # q3: out of reach
         require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
-        sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
-        cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
-        sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                across_q2*across_q2 + along_q2*along_q2 > 0.0,
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
-            sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -201,13 +169,38 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
+        sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
+        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        if everywhere(reach > 1e-11*machine_scale):
+            arm_along_q2 = -effective_q3_2*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+            direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2 = -effective_q3_2*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2 = select(
+                reach > 1e-11*machine_scale,
+                arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1,
+                cos(free_a2),
+            )
+            direction_y_q2 = select(
+                reach > 1e-11*machine_scale,
+                arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1,
+                sin(free_a2),
+            )
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + atan2(direction_y_q2, direction_x_q2)/DEGREE, near_a2)  # A2: its turn
+        cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
+        sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
@@ -318,155 +311,6 @@ class ArrayPrograms(Programs):
             *(a2 + effective_q3_2 - reach_front)*(a2 + reach_front - effective_q3_2)
             /(swing_scale_q3_2*swing_scale_q3_2)
         )
-        cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
-        sin_swing_q3_front_down = -root(sine_square_q3_front)
-        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3_2 - d4*sin_swing_q3_front_down/effective_q3_2
-        sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3_2 + d4*cos_swing_q3_front/effective_q3_2
-        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3_2 + d4*sin_swing_q3_front_down/effective_q3_2
-        sin_q3_front_up = d4*cos_swing_q3_front/effective_q3_2 - a3*sin_swing_q3_front_down/effective_q3_2
-        if everywhere(reach_front > 1e-11*machine_scale):
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = select(length_q2_squared_front_down > 0.0, root(length_q2_squared_front_down), 1.0)
-            cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
-            sin_q2_front_down = across_q2_front_down/length_q2_front_down
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = select(length_q2_squared_front_up > 0.0, root(length_q2_squared_front_up), 1.0)
-            cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
-            sin_q2_front_up = across_q2_front_up/length_q2_front_up
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = select(
-                (length_q2_squared_front_down > 0.0) & (reach_front > 1e-11*machine_scale),
-                root(length_q2_squared_front_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_front_down = select(
-                reach_front > 1e-11*machine_scale,
-                along_q2_front_down/length_q2_front_down,
-                cos(free_a2),
-            )
-            sin_q2_front_down = select(
-                reach_front > 1e-11*machine_scale,
-                across_q2_front_down/length_q2_front_down,
-                sin(free_a2),
-            )
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = select(
-                (length_q2_squared_front_up > 0.0) & (reach_front > 1e-11*machine_scale),
-                root(length_q2_squared_front_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_front_up = select(
-                reach_front > 1e-11*machine_scale,
-                along_q2_front_up/length_q2_front_up,
-                cos(free_a2),
-            )
-            sin_q2_front_up = select(
-                reach_front > 1e-11*machine_scale,
-                across_q2_front_up/length_q2_front_up,
-                sin(free_a2),
-            )
-        wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
-        reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3_back = (
-            (effective_q3_2 + reach_back - a2)*(a2 + effective_q3_2 + reach_back)*(a2 + effective_q3_2 - reach_back)
-            *(a2 + reach_back - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
-        )
-        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
-        sin_swing_q3_back_down = -root(sine_square_q3_back)
-        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3_2 - d4*sin_swing_q3_back_down/effective_q3_2
-        sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3_2 + d4*cos_swing_q3_back/effective_q3_2
-        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3_2 + d4*sin_swing_q3_back_down/effective_q3_2
-        sin_q3_back_up = d4*cos_swing_q3_back/effective_q3_2 - a3*sin_swing_q3_back_down/effective_q3_2
-        if everywhere(reach_back > 1e-11*machine_scale):
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = select(length_q2_squared_back_down > 0.0, root(length_q2_squared_back_down), 1.0)
-            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
-            sin_q2_back_down = across_q2_back_down/length_q2_back_down
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = select(length_q2_squared_back_up > 0.0, root(length_q2_squared_back_up), 1.0)
-            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
-            sin_q2_back_up = across_q2_back_up/length_q2_back_up
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = select(
-                (length_q2_squared_back_down > 0.0) & (reach_back > 1e-11*machine_scale),
-                root(length_q2_squared_back_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_back_down = select(
-                reach_back > 1e-11*machine_scale,
-                along_q2_back_down/length_q2_back_down,
-                cos(free_a2),
-            )
-            sin_q2_back_down = select(
-                reach_back > 1e-11*machine_scale,
-                across_q2_back_down/length_q2_back_down,
-                sin(free_a2),
-            )
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = select(
-                (length_q2_squared_back_up > 0.0) & (reach_back > 1e-11*machine_scale),
-                root(length_q2_squared_back_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_back_up = select(reach_back > 1e-11*machine_scale, along_q2_back_up/length_q2_back_up, cos(free_a2))
-            sin_q2_back_up = select(reach_back > 1e-11*machine_scale, across_q2_back_up/length_q2_back_up, sin(free_a2))
         refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # q3: out of reach
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
@@ -475,6 +319,47 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1_front = nearest_period(offset_a1 + atan2(sin_q1_front, cos_q1_front)/DEGREE, near_a1)  # A1: its turn
+        sin_swing_q3_front_up = root(sine_square_q3_front)
+        cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        if everywhere(reach_front > 1e-11*machine_scale):
+            arm_along_q2_front_down = effective_q3_2*sin_swing_q3_front_up
+            arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_front_down = (
+                arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+            )
+            direction_y_q2_front_down = (
+                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
+            direction_y_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2_front_down = effective_q3_2*sin_swing_q3_front_up
+            arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_front_down = select(
+                reach_front > 1e-11*machine_scale,
+                arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front,
+                cos(free_a2),
+            )
+            direction_y_q2_front_down = select(
+                reach_front > 1e-11*machine_scale,
+                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front,
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_front_up = select(
+                reach_front > 1e-11*machine_scale,
+                arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front,
+                cos(free_a2),
+            )
+            direction_y_q2_front_up = select(
+                reach_front > 1e-11*machine_scale,
+                -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1,
+                sin(free_a2),
+            )
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -482,7 +367,11 @@ class ArrayPrograms(Programs):
             open_a2,
         )
         # A2: its turn
-        axis_a2_front_down = nearest_period(offset_a2 + atan2(sin_q2_front_down, cos_q2_front_down)/DEGREE, near_a2)
+        axis_a2_front_down = nearest_period(
+            offset_a2 + atan2(direction_y_q2_front_down, direction_x_q2_front_down)/DEGREE, near_a2,
+        )
+        cos_q3_front_down = a3*cos_swing_q3_front/effective_q3_2 + d4*sin_swing_q3_front_up/effective_q3_2
+        sin_q3_front_down = d4*cos_swing_q3_front/effective_q3_2 - a3*sin_swing_q3_front_up/effective_q3_2
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
@@ -491,18 +380,74 @@ class ArrayPrograms(Programs):
         )
         # A3: its turn
         axis_a3_front_down = nearest_period(offset_a3 + atan2(sin_q3_front_down, cos_q3_front_down)/DEGREE, near_a3)
+        # A2: its turn
+        axis_a2_front_up = nearest_period(
+            offset_a2 + atan2(direction_y_q2_front_up, direction_x_q2_front_up)/DEGREE, near_a2,
+        )
+        cos_q3_front_up = a3*cos_swing_q3_front/effective_q3_2 - d4*sin_swing_q3_front_up/effective_q3_2
+        sin_q3_front_up = a3*sin_swing_q3_front_up/effective_q3_2 + d4*cos_swing_q3_front/effective_q3_2
+        # A3: its turn
+        axis_a3_front_up = nearest_period(offset_a3 + atan2(sin_q3_front_up, cos_q3_front_up)/DEGREE, near_a3)
+        wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
+        reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
+        # kept as a product
+        sine_square_q3_back = (
+            (effective_q3_2 + reach_back - a2)*(a2 + effective_q3_2 + reach_back)*(a2 + effective_q3_2 - reach_back)
+            *(a2 + reach_back - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
+        )
         refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # q3: out of reach
         axis_a1_back = nearest_period(offset_a1 + atan2(sin_q1_back, cos_q1_back)/DEGREE, near_a1)  # A1: its turn
+        sin_swing_q3_back_up = root(sine_square_q3_back)
+        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        if everywhere(reach_back > 1e-11*machine_scale):
+            arm_along_q2_back_down = effective_q3_2*sin_swing_q3_back_up
+            arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+            direction_y_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
+            direction_y_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            arm_along_q2_back_down = effective_q3_2*sin_swing_q3_back_up
+            arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_back_down = select(
+                reach_back > 1e-11*machine_scale,
+                arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back,
+                cos(free_a2),
+            )
+            direction_y_q2_back_down = select(
+                reach_back > 1e-11*machine_scale,
+                arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back,
+                sin(free_a2),
+            )
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_back_up = select(
+                reach_back > 1e-11*machine_scale,
+                arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back,
+                cos(free_a2),
+            )
+            direction_y_q2_back_up = select(
+                reach_back > 1e-11*machine_scale,
+                -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1,
+                sin(free_a2),
+            )
         # A2: its turn
-        axis_a2_back_down = nearest_period(offset_a2 + atan2(sin_q2_back_down, cos_q2_back_down)/DEGREE, near_a2)
+        axis_a2_back_down = nearest_period(
+            offset_a2 + atan2(direction_y_q2_back_down, direction_x_q2_back_down)/DEGREE, near_a2,
+        )
+        cos_q3_back_down = a3*cos_swing_q3_back/effective_q3_2 + d4*sin_swing_q3_back_up/effective_q3_2
+        sin_q3_back_down = d4*cos_swing_q3_back/effective_q3_2 - a3*sin_swing_q3_back_up/effective_q3_2
         # A3: its turn
         axis_a3_back_down = nearest_period(offset_a3 + atan2(sin_q3_back_down, cos_q3_back_down)/DEGREE, near_a3)
         # A2: its turn
-        axis_a2_front_up = nearest_period(offset_a2 + atan2(sin_q2_front_up, cos_q2_front_up)/DEGREE, near_a2)
-        # A3: its turn
-        axis_a3_front_up = nearest_period(offset_a3 + atan2(sin_q3_front_up, cos_q3_front_up)/DEGREE, near_a3)
-        # A2: its turn
-        axis_a2_back_up = nearest_period(offset_a2 + atan2(sin_q2_back_up, cos_q2_back_up)/DEGREE, near_a2)
+        axis_a2_back_up = nearest_period(
+            offset_a2 + atan2(direction_y_q2_back_up, direction_x_q2_back_up)/DEGREE, near_a2,
+        )
+        cos_q3_back_up = a3*cos_swing_q3_back/effective_q3_2 - d4*sin_swing_q3_back_up/effective_q3_2
+        sin_q3_back_up = a3*sin_swing_q3_back_up/effective_q3_2 + d4*cos_swing_q3_back/effective_q3_2
         # A3: its turn
         axis_a3_back_up = nearest_period(offset_a3 + atan2(sin_q3_back_up, cos_q3_back_up)/DEGREE, near_a3)
         return (

@@ -103,36 +103,23 @@ class ArrayPrograms(Programs):
         if everywhere(reach > 1e-11*machine_scale):
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = select(
-                across_a1*across_a1 + along_a1*along_a1 > 0.0,
-                root(across_a1*across_a1 + along_a1*along_a1),
-                1.0,
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
+            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = select(
-                (reach > 1e-11*machine_scale) & (across_a1*across_a1 + along_a1*along_a1 > 0.0),
-                root(across_a1*across_a1 + along_a1*along_a1),
-                1.0,
-            )
-            # its reference where it is free
-            cos_a1 = select(reach > 1e-11*machine_scale, along_a1/length_a1, cos(free_a1))
-            sin_a1 = select(reach > 1e-11*machine_scale, across_a1/length_a1, sin(free_a1))
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = select(reach > 1e-11*machine_scale, arm_across_a1*y + arm_along_a1*x, cos(free_a1))
+            direction_y_a1 = select(reach > 1e-11*machine_scale, arm_along_a1*y - arm_across_a1*x, sin(free_a1))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + atan2(direction_y_a1, direction_x_a1)/DEGREE, near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -198,51 +185,46 @@ class ArrayPrograms(Programs):
         if everywhere(reach > 1e-11*machine_scale):
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = select(length_a1_squared_right > 0.0, root(length_a1_squared_right), 1.0)
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = select(length_a1_squared_left > 0.0, root(length_a1_squared_left), 1.0)
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
+            direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
+            direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = select(
-                (length_a1_squared_right > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a1_squared_right),
-                1.0,
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_right = select(
+                reach > 1e-11*machine_scale,
+                arm_across_a1_right*y + arm_along_a1*x,
+                cos(free_a1),
             )
-            # its reference where it is free
-            cos_a1_right = select(reach > 1e-11*machine_scale, along_a1_right/length_a1_right, cos(free_a1))
-            sin_a1_right = select(reach > 1e-11*machine_scale, across_a1_right/length_a1_right, sin(free_a1))
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = select(
-                (length_a1_squared_left > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a1_squared_left),
-                1.0,
+            direction_y_a1_right = select(
+                reach > 1e-11*machine_scale,
+                arm_along_a1*y - arm_across_a1_right*x,
+                sin(free_a1),
             )
-            # its reference where it is free
-            cos_a1_left = select(reach > 1e-11*machine_scale, along_a1_left/length_a1_left, cos(free_a1))
-            sin_a1_left = select(reach > 1e-11*machine_scale, across_a1_left/length_a1_left, sin(free_a1))
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_left = select(
+                reach > 1e-11*machine_scale,
+                arm_along_a1*x - arm_across_a1_right*y,
+                cos(free_a1),
+            )
+            direction_y_a1_left = select(
+                reach > 1e-11*machine_scale,
+                arm_across_a1_right*x + arm_along_a1*y,
+                sin(free_a1),
+            )
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + atan2(direction_y_a1_right, direction_x_a1_right)/DEGREE, near_a1)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -251,7 +233,8 @@ class ArrayPrograms(Programs):
         )
         axis_a2_right = nearest_period(offset_a2 + atan2(sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
         axis_a3 = offset_a3 + z
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
+        # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + atan2(direction_y_a1_left, direction_x_a1_left)/DEGREE, near_a1)
         axis_a2_left = nearest_period(offset_a2 + atan2(-sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
         return (
             ((axis_a1_right, axis_a2_right, axis_a3), refused(status, 0.0)),

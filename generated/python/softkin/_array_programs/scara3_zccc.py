@@ -154,60 +154,55 @@ class ArrayPrograms(Programs):
         )
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
+        axis_a1 = offset_a1 + z
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
         sin_a3 = root(sine_square_a3)*sigma_elbow
         if everywhere(reach > 1e-11*machine_scale):
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
-            along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
-            across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-            length_a2 = select(
-                across_a2*across_a2 + along_a2*along_a2 > 0.0,
-                root(across_a2*across_a2 + along_a2*along_a2),
-                1.0,
-            )
-            cos_a2 = along_a2/length_a2  # its reference where it is free
-            sin_a2 = across_a2/length_a2
+            # a2: linear pair in the x and y equations; its reference where it is free
+            direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
+            direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
-            along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
-            across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-            length_a2 = select(
-                (reach > 1e-11*machine_scale) & (across_a2*across_a2 + along_a2*along_a2 > 0.0),
-                root(across_a2*across_a2 + along_a2*along_a2),
-                1.0,
+            # a2: linear pair in the x and y equations; its reference where it is free
+            direction_x_a2 = select(
+                reach > 1e-11*machine_scale,
+                arm_across_a2*wrist_y + arm_along_a2*wrist_x,
+                cos(free_a2),
             )
-            # its reference where it is free
-            cos_a2 = select(reach > 1e-11*machine_scale, along_a2/length_a2, cos(free_a2))
-            sin_a2 = select(reach > 1e-11*machine_scale, across_a2/length_a2, sin(free_a2))
-        axis_a1 = offset_a1 + z
+            direction_y_a2 = select(
+                reach > 1e-11*machine_scale,
+                arm_along_a2*wrist_y - arm_across_a2*wrist_x,
+                sin(free_a2),
+            )
+        angle_a2 = atan2(direction_y_a2, direction_x_a2)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
+        angle_a3 = atan2(sin_a3, cos_a3)
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
-        cos_a23 = cos_a2*cos_a3 - sin_a2*sin_a3
-        sin_a23 = cos_a2*sin_a3 + cos_a3*sin_a2
-        cos_a4 = cos_a23*cos_heading + sin_a23*sin_heading  # a4: what the sum a234 leaves
-        sin_a4 = cos_a23*sin_heading - cos_heading*sin_a23
+        axis_a3 = nearest_period(offset_a3 + angle_a3/DEGREE, near_a3)  # A3: its turn
+        angle_heading = atan2(sin_heading, cos_heading)
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_a4, cos_a4)/DEGREE, near_a4)  # A4: its turn
+        # a4: what the sum a234 leaves; A4: its turn
+        axis_a4 = nearest_period(offset_a4 + (angle_heading - angle_a2 - angle_a3)/DEGREE, near_a4)
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -309,84 +304,75 @@ class ArrayPrograms(Programs):
         )
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
+        axis_a1 = offset_a1 + z
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
         sin_a3_right = root(sine_square_a3)
         if everywhere(reach > 1e-11*machine_scale):
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2_right = link_length_2*sin_a3_right
-            # a2: linear pair in the x and y equations
-            along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
-            across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-            length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
-            length_a2_right = select(length_a2_squared_right > 0.0, root(length_a2_squared_right), 1.0)
-            cos_a2_right = along_a2_right/length_a2_right  # its reference where it is free
-            sin_a2_right = across_a2_right/length_a2_right
-            along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
-            across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
-            length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
-            length_a2_left = select(length_a2_squared_left > 0.0, root(length_a2_squared_left), 1.0)
-            cos_a2_left = along_a2_left/length_a2_left  # its reference where it is free
-            sin_a2_left = across_a2_left/length_a2_left
+            # a2: linear pair in the x and y equations; its reference where it is free
+            direction_x_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
+            direction_y_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
+            # a2: linear pair in the x and y equations; its reference where it is free
+            direction_x_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y
+            direction_y_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2_right = link_length_2*sin_a3_right
-            # a2: linear pair in the x and y equations
-            along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
-            across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-            length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
-            length_a2_right = select(
-                (length_a2_squared_right > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a2_squared_right),
-                1.0,
+            # a2: linear pair in the x and y equations; its reference where it is free
+            direction_x_a2_right = select(
+                reach > 1e-11*machine_scale,
+                arm_across_a2_right*wrist_y + arm_along_a2*wrist_x,
+                cos(free_a2),
             )
-            # its reference where it is free
-            cos_a2_right = select(reach > 1e-11*machine_scale, along_a2_right/length_a2_right, cos(free_a2))
-            sin_a2_right = select(reach > 1e-11*machine_scale, across_a2_right/length_a2_right, sin(free_a2))
-            along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
-            across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
-            length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
-            length_a2_left = select(
-                (length_a2_squared_left > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a2_squared_left),
-                1.0,
+            direction_y_a2_right = select(
+                reach > 1e-11*machine_scale,
+                arm_along_a2*wrist_y - arm_across_a2_right*wrist_x,
+                sin(free_a2),
             )
-            # its reference where it is free
-            cos_a2_left = select(reach > 1e-11*machine_scale, along_a2_left/length_a2_left, cos(free_a2))
-            sin_a2_left = select(reach > 1e-11*machine_scale, across_a2_left/length_a2_left, sin(free_a2))
-        axis_a1 = offset_a1 + z
+            # a2: linear pair in the x and y equations; its reference where it is free
+            direction_x_a2_left = select(
+                reach > 1e-11*machine_scale,
+                arm_along_a2*wrist_x - arm_across_a2_right*wrist_y,
+                cos(free_a2),
+            )
+            direction_y_a2_left = select(
+                reach > 1e-11*machine_scale,
+                arm_across_a2_right*wrist_x + arm_along_a2*wrist_y,
+                sin(free_a2),
+            )
+        angle_a2_right = atan2(direction_y_a2_right, direction_x_a2_right)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2_right = nearest_period(offset_a2 + atan2(sin_a2_right, cos_a2_right)/DEGREE, near_a2)  # A2: its turn
+        axis_a2_right = nearest_period(offset_a2 + angle_a2_right/DEGREE, near_a2)  # A2: its turn
+        angle_a3_right = atan2(sin_a3_right, cos_a3)
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3_right = nearest_period(offset_a3 + atan2(sin_a3_right, cos_a3)/DEGREE, near_a3)  # A3: its turn
-        cos_a23_right = cos_a2_right*cos_a3 - sin_a2_right*sin_a3_right
-        sin_a23_right = cos_a2_right*sin_a3_right + cos_a3*sin_a2_right
-        cos_a4_right = cos_a23_right*cos_heading + sin_a23_right*sin_heading  # a4: what the sum a234 leaves
-        sin_a4_right = cos_a23_right*sin_heading - cos_heading*sin_a23_right
+        axis_a3_right = nearest_period(offset_a3 + angle_a3_right/DEGREE, near_a3)  # A3: its turn
+        angle_heading = atan2(sin_heading, cos_heading)
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4_right = nearest_period(offset_a4 + atan2(sin_a4_right, cos_a4_right)/DEGREE, near_a4)  # A4: its turn
-        axis_a2_left = nearest_period(offset_a2 + atan2(sin_a2_left, cos_a2_left)/DEGREE, near_a2)  # A2: its turn
-        axis_a3_left = nearest_period(offset_a3 + atan2(-sin_a3_right, cos_a3)/DEGREE, near_a3)  # A3: its turn
-        cos_a23_left = cos_a2_left*cos_a3 + sin_a2_left*sin_a3_right
-        sin_a23_left = cos_a3*sin_a2_left - cos_a2_left*sin_a3_right
-        cos_a4_left = cos_a23_left*cos_heading + sin_a23_left*sin_heading  # a4: what the sum a234 leaves
-        sin_a4_left = cos_a23_left*sin_heading - cos_heading*sin_a23_left
-        axis_a4_left = nearest_period(offset_a4 + atan2(sin_a4_left, cos_a4_left)/DEGREE, near_a4)  # A4: its turn
+        # a4: what the sum a234 leaves; A4: its turn
+        axis_a4_right = nearest_period(offset_a4 + (angle_heading - angle_a2_right - angle_a3_right)/DEGREE, near_a4)
+        angle_a2_left = atan2(direction_y_a2_left, direction_x_a2_left)
+        axis_a2_left = nearest_period(offset_a2 + angle_a2_left/DEGREE, near_a2)  # A2: its turn
+        angle_a3_left = atan2(-sin_a3_right, cos_a3)
+        axis_a3_left = nearest_period(offset_a3 + angle_a3_left/DEGREE, near_a3)  # A3: its turn
+        # a4: what the sum a234 leaves; A4: its turn
+        axis_a4_left = nearest_period(offset_a4 + (angle_heading - angle_a2_left - angle_a3_left)/DEGREE, near_a4)
         return (
             ((axis_a1, axis_a2_right, axis_a3_right, axis_a4_right), refused(status, 0.0)),
             ((axis_a1, axis_a2_left, axis_a3_left, axis_a4_left), refused(status, 0.0)),

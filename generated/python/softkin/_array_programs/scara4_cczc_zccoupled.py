@@ -168,58 +168,41 @@ class ArrayPrograms(Programs):
         if everywhere(reach > 1e-11*machine_scale):
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = select(
-                across_a1*across_a1 + along_a1*along_a1 > 0.0,
-                root(across_a1*across_a1 + along_a1*along_a1),
-                1.0,
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
+            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = select(
-                (reach > 1e-11*machine_scale) & (across_a1*across_a1 + along_a1*along_a1 > 0.0),
-                root(across_a1*across_a1 + along_a1*along_a1),
-                1.0,
-            )
-            # its reference where it is free
-            cos_a1 = select(reach > 1e-11*machine_scale, along_a1/length_a1, cos(free_a1))
-            sin_a1 = select(reach > 1e-11*machine_scale, across_a1/length_a1, sin(free_a1))
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = select(reach > 1e-11*machine_scale, arm_across_a1*y + arm_along_a1*x, cos(free_a1))
+            direction_y_a1 = select(reach > 1e-11*machine_scale, arm_along_a1*y - arm_across_a1*x, sin(free_a1))
+        angle_a1 = atan2(direction_y_a1, direction_x_a1)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
+        angle_a2 = atan2(sin_a2, cos_a2)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
-        sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
-        # a4: linear pair in the cosine of the heading and sine of the heading equations
-        cos_a4 = cos_a12*cos_heading + sin_a12*sin_heading
-        sin_a4 = cos_a12*sin_heading - cos_heading*sin_a12
+        axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE, near_a2)  # A2: its turn
+        angle_heading = atan2(heading_across, heading_along)
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_a4, cos_a4)/DEGREE, near_a4)  # A4: its turn
+        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        axis_a4 = nearest_period(offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE, near_a4)
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc/(360.0*DEGREE) - a4*gear_coupling/DEGREE  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
@@ -327,85 +310,73 @@ class ArrayPrograms(Programs):
         if everywhere(reach > 1e-11*machine_scale):
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = select(length_a1_squared_right > 0.0, root(length_a1_squared_right), 1.0)
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = select(length_a1_squared_left > 0.0, root(length_a1_squared_left), 1.0)
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
+            direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
+            direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = select(
-                (length_a1_squared_right > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a1_squared_right),
-                1.0,
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_right = select(
+                reach > 1e-11*machine_scale,
+                arm_across_a1_right*y + arm_along_a1*x,
+                cos(free_a1),
             )
-            # its reference where it is free
-            cos_a1_right = select(reach > 1e-11*machine_scale, along_a1_right/length_a1_right, cos(free_a1))
-            sin_a1_right = select(reach > 1e-11*machine_scale, across_a1_right/length_a1_right, sin(free_a1))
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = select(
-                (length_a1_squared_left > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a1_squared_left),
-                1.0,
+            direction_y_a1_right = select(
+                reach > 1e-11*machine_scale,
+                arm_along_a1*y - arm_across_a1_right*x,
+                sin(free_a1),
             )
-            # its reference where it is free
-            cos_a1_left = select(reach > 1e-11*machine_scale, along_a1_left/length_a1_left, cos(free_a1))
-            sin_a1_left = select(reach > 1e-11*machine_scale, across_a1_left/length_a1_left, sin(free_a1))
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_left = select(
+                reach > 1e-11*machine_scale,
+                arm_along_a1*x - arm_across_a1_right*y,
+                cos(free_a1),
+            )
+            direction_y_a1_left = select(
+                reach > 1e-11*machine_scale,
+                arm_across_a1_right*x + arm_along_a1*y,
+                sin(free_a1),
+            )
+        angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: its turn
+        angle_a2_right = atan2(sin_a2_right, cos_a2)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2_right = nearest_period(offset_a2 + atan2(sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
-        heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        cos_a12_right = cos_a1_right*cos_a2 - sin_a1_right*sin_a2_right
-        sin_a12_right = cos_a1_right*sin_a2_right + cos_a2*sin_a1_right
-        # a4: linear pair in the cosine of the heading and sine of the heading equations
-        cos_a4_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading
-        sin_a4_right = cos_a12_right*sin_heading - cos_heading*sin_a12_right
+        axis_a2_right = nearest_period(offset_a2 + angle_a2_right/DEGREE, near_a2)  # A2: its turn
+        angle_heading = atan2(heading_across, heading_along)
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4_right = nearest_period(offset_a4 + atan2(sin_a4_right, cos_a4_right)/DEGREE, near_a4)  # A4: its turn
+        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        axis_a4_right = nearest_period(offset_a4 + (angle_heading - angle_a1_right - angle_a2_right)/DEGREE, near_a4)
         a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
         # a3: affine in the z equation
         a3_right = z + a4_right*pitch_zc/(360.0*DEGREE) - a4_right*gear_coupling/DEGREE
         axis_a3_right = a3_right + offset_a3
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
-        axis_a2_left = nearest_period(offset_a2 + atan2(-sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
-        cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
-        sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
-        # a4: linear pair in the cosine of the heading and sine of the heading equations
-        cos_a4_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading
-        sin_a4_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
-        axis_a4_left = nearest_period(offset_a4 + atan2(sin_a4_left, cos_a4_left)/DEGREE, near_a4)  # A4: its turn
+        angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
+        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
+        angle_a2_left = atan2(-sin_a2_right, cos_a2)
+        axis_a2_left = nearest_period(offset_a2 + angle_a2_left/DEGREE, near_a2)  # A2: its turn
+        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        axis_a4_left = nearest_period(offset_a4 + (angle_heading - angle_a1_left - angle_a2_left)/DEGREE, near_a4)
         a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
         a3_left = z + a4_left*pitch_zc/(360.0*DEGREE) - a4_left*gear_coupling/DEGREE  # a3: affine in the z equation
         axis_a3_left = a3_left + offset_a3

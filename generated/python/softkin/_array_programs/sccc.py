@@ -163,36 +163,33 @@ class ArrayPrograms(Programs):
         if everywhere(reach > 1e-11*machine_scale):
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-            length_a1 = select(
-                across_a1*across_a1 + along_a1*along_a1 > 0.0,
-                root(across_a1*across_a1 + along_a1*along_a1),
-                1.0,
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
+            direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-            length_a1 = select(
-                (reach > 1e-11*machine_scale) & (across_a1*across_a1 + along_a1*along_a1 > 0.0),
-                root(across_a1*across_a1 + along_a1*along_a1),
-                1.0,
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = select(
+                reach > 1e-11*machine_scale,
+                arm_across_a1*wrist_y + arm_along_a1*wrist_x,
+                cos(free_a1),
             )
-            # its reference where it is free
-            cos_a1 = select(reach > 1e-11*machine_scale, along_a1/length_a1, cos(free_a1))
-            sin_a1 = select(reach > 1e-11*machine_scale, across_a1/length_a1, sin(free_a1))
+            direction_y_a1 = select(
+                reach > 1e-11*machine_scale,
+                arm_along_a1*wrist_y - arm_across_a1*wrist_x,
+                sin(free_a1),
+            )
+        angle_a1 = atan2(direction_y_a1, direction_x_a1)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
+        angle_a2 = atan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
         if everywhere(absolute(turn_a2) > 0.0):
             near_a2 = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
@@ -207,8 +204,8 @@ class ArrayPrograms(Programs):
                 select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
                 open_a2,
             )
-        # A2: its turn
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE - coupling_12*motor_a1/DEGREE, near_a2)
+        axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE, near_a2)  # A2: its turn
+        angle_heading = atan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         if everywhere(absolute(turn_a3) > 0.0):
             near_a3 = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
@@ -227,13 +224,13 @@ class ArrayPrograms(Programs):
                 select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
                 open_a3,
             )
-        cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
-        sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
-        cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
-        sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
-        # A3: its turn
+        # a3: what the sum a123 leaves; A3: its turn
         axis_a3 = nearest_period(
-            offset_a3 + atan2(sin_a3, cos_a3)/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE, near_a3,
+            (
+                offset_a3 + (angle_heading - angle_a1 - angle_a2)/DEGREE
+                - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
+            ),
+            near_a3,
         )
         return (axis_a1, axis_a2, axis_a3), status
 
@@ -362,55 +359,50 @@ class ArrayPrograms(Programs):
         if everywhere(reach > 1e-11*machine_scale):
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
-            # a1: linear pair in the x and y equations
-            along_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
-            across_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = select(length_a1_squared_right > 0.0, root(length_a1_squared_right), 1.0)
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = select(length_a1_squared_left > 0.0, root(length_a1_squared_left), 1.0)
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
+            direction_y_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y
+            direction_y_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1_right = link_length_2*sin_a2_right
-            # a1: linear pair in the x and y equations
-            along_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
-            across_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = select(
-                (length_a1_squared_right > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a1_squared_right),
-                1.0,
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_right = select(
+                reach > 1e-11*machine_scale,
+                arm_across_a1_right*wrist_y + arm_along_a1*wrist_x,
+                cos(free_a1),
             )
-            # its reference where it is free
-            cos_a1_right = select(reach > 1e-11*machine_scale, along_a1_right/length_a1_right, cos(free_a1))
-            sin_a1_right = select(reach > 1e-11*machine_scale, across_a1_right/length_a1_right, sin(free_a1))
-            along_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = select(
-                (length_a1_squared_left > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a1_squared_left),
-                1.0,
+            direction_y_a1_right = select(
+                reach > 1e-11*machine_scale,
+                arm_along_a1*wrist_y - arm_across_a1_right*wrist_x,
+                sin(free_a1),
             )
-            # its reference where it is free
-            cos_a1_left = select(reach > 1e-11*machine_scale, along_a1_left/length_a1_left, cos(free_a1))
-            sin_a1_left = select(reach > 1e-11*machine_scale, across_a1_left/length_a1_left, sin(free_a1))
+            # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1_left = select(
+                reach > 1e-11*machine_scale,
+                arm_along_a1*wrist_x - arm_across_a1_right*wrist_y,
+                cos(free_a1),
+            )
+            direction_y_a1_left = select(
+                reach > 1e-11*machine_scale,
+                arm_across_a1_right*wrist_x + arm_along_a1*wrist_y,
+                sin(free_a1),
+            )
+        angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + angle_a1_right/DEGREE, near_a1)  # A1: its turn
+        angle_a2_right = atan2(sin_a2_right, cos_a2)
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
+        angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
+        axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
         if everywhere(absolute(turn_a2) > 0.0):
             near_a2_right = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
@@ -437,12 +429,14 @@ class ArrayPrograms(Programs):
             )
         # A2: its turn
         axis_a2_right = nearest_period(
-            offset_a2 + atan2(sin_a2_right, cos_a2)/DEGREE - coupling_12*motor_a1_right/DEGREE, near_a2_right,
+            offset_a2 + angle_a2_right/DEGREE - coupling_12*motor_a1_right/DEGREE, near_a2_right,
         )
+        angle_heading = atan2(sin_heading, cos_heading)
         motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
+        angle_a2_left = atan2(-sin_a2_right, cos_a2)
         # A2: its turn
         axis_a2_left = nearest_period(
-            offset_a2 + atan2(-sin_a2_right, cos_a2)/DEGREE - coupling_12*motor_a1_left/DEGREE, near_a2_left,
+            offset_a2 + angle_a2_left/DEGREE - coupling_12*motor_a1_left/DEGREE, near_a2_left,
         )
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
         if everywhere(absolute(turn_a3) > 0.0):
@@ -473,26 +467,18 @@ class ArrayPrograms(Programs):
                 select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
                 open_a3_left,
             )
-        cos_a12_right = cos_a1_right*cos_a2 - sin_a1_right*sin_a2_right
-        sin_a12_right = cos_a1_right*sin_a2_right + cos_a2*sin_a1_right
-        cos_a3_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading  # a3: what the sum a123 leaves
-        sin_a3_right = cos_a12_right*sin_heading - cos_heading*sin_a12_right
-        # A3: its turn
+        # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = nearest_period(
             (
-                offset_a3 + atan2(sin_a3_right, cos_a3_right)/DEGREE
+                offset_a3 + (angle_heading - angle_a1_right - angle_a2_right)/DEGREE
                 - (coupling_13*motor_a1_right + coupling_23*motor_a2_right)/DEGREE
             ),
             near_a3_right,
         )
-        cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
-        sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
-        cos_a3_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading  # a3: what the sum a123 leaves
-        sin_a3_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
-        # A3: its turn
+        # a3: what the sum a123 leaves; A3: its turn
         axis_a3_left = nearest_period(
             (
-                offset_a3 + atan2(sin_a3_left, cos_a3_left)/DEGREE
+                offset_a3 + (angle_heading - angle_a1_left - angle_a2_left)/DEGREE
                 - (coupling_13*motor_a1_left + coupling_23*motor_a2_left)/DEGREE
             ),
             near_a3_left,

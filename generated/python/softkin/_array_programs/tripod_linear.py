@@ -350,56 +350,6 @@ class ArrayPrograms(Programs):
         axis_a1_below = a1_below + offset_a1
         axis_a2_below = a2_below + offset_a2
         axis_a3_below = a3_below + offset_a3
-        a1_above = -middle_a1 - root(root_square_a1)
-        pivot_1_x_above = inner_radius - outer_radius - a1_above*sin_rail_angle  # rod 1
-        rod_1_x_above = x - pivot_1_x_above
-        pivot_1_z_above = -a1_above*cos_rail_angle  # rod 1
-        rod_1_z_above = z - pivot_1_z_above
-        type2_rods_coplanar_above_below_below = (
-            assembly_sign
-            *(
-                rod_1_x_above*rod_2_y_below*rod_3_z_below + rod_1_z_above*rod_2_x_below*rod_3_y_below
-                + rod_2_z_below*rod_3_x_below*y - rod_1_x_above*rod_2_z_below*rod_3_y_below
-                - rod_1_z_above*rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_z_below*y
-            )
-            /(arm_length*arm_length*arm_length)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0.0, 3.0)
-        axis_a1_above = a1_above + offset_a1
-        a2_above = middle_a2 - root(root_square_a2)
-        pivot_2_x_above = 0.5*outer_radius + 0.5*a2_above*sin_rail_angle - 0.5*inner_radius  # rod 2
-        rod_2_x_above = x - pivot_2_x_above
-        # rod 2
-        pivot_2_y_above = (
-            0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2_above*sin_rail_angle
-        )
-        rod_2_y_above = y - pivot_2_y_above
-        pivot_2_z_above = -a2_above*cos_rail_angle  # rod 2
-        rod_2_z_above = z - pivot_2_z_above
-        type2_rods_coplanar_below_above_below = (
-            assembly_sign
-            *(
-                rod_1_x_below*rod_2_y_above*rod_3_z_below + rod_1_z_below*rod_2_x_above*rod_3_y_below
-                + rod_2_z_above*rod_3_x_below*y - rod_1_x_below*rod_2_z_above*rod_3_y_below
-                - rod_1_z_below*rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_z_below*y
-            )
-            /(arm_length*arm_length*arm_length)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0.0, 3.0)
-        axis_a2_above = a2_above + offset_a2
-        type2_rods_coplanar_above_above_below = (
-            assembly_sign
-            *(
-                rod_1_x_above*rod_2_y_above*rod_3_z_below + rod_1_z_above*rod_2_x_above*rod_3_y_below
-                + rod_2_z_above*rod_3_x_below*y - rod_1_x_above*rod_2_z_above*rod_3_y_below
-                - rod_1_z_above*rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_z_below*y
-            )
-            /(arm_length*arm_length*arm_length)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0.0, 3.0)
         a3_above = middle_a3 - root(root_square_a3)
         pivot_3_x_above = 0.5*outer_radius + 0.5*a3_above*sin_rail_angle - 0.5*inner_radius  # rod 3
         rod_3_x_above = x - pivot_3_x_above
@@ -422,17 +372,28 @@ class ArrayPrograms(Programs):
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0.0, 3.0)
         axis_a3_above = a3_above + offset_a3
-        type2_rods_coplanar_above_below_above = (
+        a2_above = middle_a2 - root(root_square_a2)
+        pivot_2_x_above = 0.5*outer_radius + 0.5*a2_above*sin_rail_angle - 0.5*inner_radius  # rod 2
+        rod_2_x_above = x - pivot_2_x_above
+        # rod 2
+        pivot_2_y_above = (
+            0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius - 0.5*root(3.0)*a2_above*sin_rail_angle
+        )
+        rod_2_y_above = y - pivot_2_y_above
+        pivot_2_z_above = -a2_above*cos_rail_angle  # rod 2
+        rod_2_z_above = z - pivot_2_z_above
+        type2_rods_coplanar_below_above_below = (
             assembly_sign
             *(
-                rod_1_x_above*rod_2_y_below*rod_3_z_above + rod_1_z_above*rod_2_x_below*rod_3_y_above
-                + rod_2_z_below*rod_3_x_above*y - rod_1_x_above*rod_2_z_below*rod_3_y_above
-                - rod_1_z_above*rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_z_above*y
+                rod_1_x_below*rod_2_y_above*rod_3_z_below + rod_1_z_below*rod_2_x_above*rod_3_y_below
+                + rod_2_z_above*rod_3_x_below*y - rod_1_x_below*rod_2_z_above*rod_3_y_below
+                - rod_1_z_below*rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_z_below*y
             )
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0.0, 3.0)
+        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0.0, 3.0)
+        axis_a2_above = a2_above + offset_a2
         type2_rods_coplanar_below_above_above = (
             assembly_sign
             *(
@@ -444,6 +405,45 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0.0, 3.0)
+        a1_above = -middle_a1 - root(root_square_a1)
+        pivot_1_x_above = inner_radius - outer_radius - a1_above*sin_rail_angle  # rod 1
+        rod_1_x_above = x - pivot_1_x_above
+        pivot_1_z_above = -a1_above*cos_rail_angle  # rod 1
+        rod_1_z_above = z - pivot_1_z_above
+        type2_rods_coplanar_above_below_below = (
+            assembly_sign
+            *(
+                rod_1_x_above*rod_2_y_below*rod_3_z_below + rod_1_z_above*rod_2_x_below*rod_3_y_below
+                + rod_2_z_below*rod_3_x_below*y - rod_1_x_above*rod_2_z_below*rod_3_y_below
+                - rod_1_z_above*rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_z_below*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0.0, 3.0)
+        axis_a1_above = a1_above + offset_a1
+        type2_rods_coplanar_above_below_above = (
+            assembly_sign
+            *(
+                rod_1_x_above*rod_2_y_below*rod_3_z_above + rod_1_z_above*rod_2_x_below*rod_3_y_above
+                + rod_2_z_below*rod_3_x_above*y - rod_1_x_above*rod_2_z_below*rod_3_y_above
+                - rod_1_z_above*rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_z_above*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0.0, 3.0)
+        type2_rods_coplanar_above_above_below = (
+            assembly_sign
+            *(
+                rod_1_x_above*rod_2_y_above*rod_3_z_below + rod_1_z_above*rod_2_x_above*rod_3_y_below
+                + rod_2_z_above*rod_3_x_below*y - rod_1_x_above*rod_2_z_above*rod_3_y_below
+                - rod_1_z_above*rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_z_below*y
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0.0, 3.0)
         type2_rods_coplanar_above_above_above = (
             assembly_sign
             *(

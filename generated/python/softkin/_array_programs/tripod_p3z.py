@@ -271,42 +271,6 @@ class ArrayPrograms(Programs):
         axis_a1_above = a1_above + offset_a1
         axis_a2_above = a2_above + offset_a2
         axis_a3_above = a3_above + offset_a3
-        a1_below = z - root(root_square_a1)
-        rod_1_z_below = z - a1_below
-        type2_rods_coplanar_below_above_above = (
-            assembly_sign
-            *(
-                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
-            )
-            /(arm_length*arm_length*arm_length)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0.0, 3.0)
-        axis_a1_below = a1_below + offset_a1
-        a2_below = z - root(root_square_a2)
-        rod_2_z_below = z - a2_below
-        type2_rods_coplanar_above_below_above = (
-            assembly_sign
-            *(
-                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
-            )
-            /(arm_length*arm_length*arm_length)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0.0, 3.0)
-        axis_a2_below = a2_below + offset_a2
-        type2_rods_coplanar_below_below_above = (
-            assembly_sign
-            *(
-                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
-            )
-            /(arm_length*arm_length*arm_length)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0.0, 3.0)
         a3_below = z - root(root_square_a3)
         rod_3_z_below = z - a3_below
         type2_rods_coplanar_above_above_below = (
@@ -320,16 +284,19 @@ class ArrayPrograms(Programs):
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_below = select(type2_rods_coplanar_above_above_below >= min_type2_margin, 0.0, 3.0)
         axis_a3_below = a3_below + offset_a3
-        type2_rods_coplanar_below_above_below = (
+        a2_below = z - root(root_square_a2)
+        rod_2_z_below = z - a2_below
+        type2_rods_coplanar_above_below_above = (
             assembly_sign
             *(
-                rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
+                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
             )
             /(arm_length*arm_length*arm_length)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0.0, 3.0)
+        refusal_above_below_above = select(type2_rods_coplanar_above_below_above >= min_type2_margin, 0.0, 3.0)
+        axis_a2_below = a2_below + offset_a2
         type2_rods_coplanar_above_below_below = (
             assembly_sign
             *(
@@ -340,6 +307,39 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = select(type2_rods_coplanar_above_below_below >= min_type2_margin, 0.0, 3.0)
+        a1_below = z - root(root_square_a1)
+        rod_1_z_below = z - a1_below
+        type2_rods_coplanar_below_above_above = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_above_above = select(type2_rods_coplanar_below_above_above >= min_type2_margin, 0.0, 3.0)
+        axis_a1_below = a1_below + offset_a1
+        type2_rods_coplanar_below_above_below = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_above_below = select(type2_rods_coplanar_below_above_below >= min_type2_margin, 0.0, 3.0)
+        type2_rods_coplanar_below_below_above = (
+            assembly_sign
+            *(
+                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
+                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
+            )
+            /(arm_length*arm_length*arm_length)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_below_below_above = select(type2_rods_coplanar_below_below_above >= min_type2_margin, 0.0, 3.0)
         type2_rods_coplanar_below_below_below = (
             assembly_sign
             *(

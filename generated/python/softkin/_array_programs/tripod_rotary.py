@@ -614,8 +614,8 @@ class ArrayPrograms(Programs):
             )
             /swing_scale_a2
         )
-        sin_swing_a2_outward = -root(sine_square_a2)
-        cos_a2_outward = across_a2*sin_swing_a2_outward/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
+        sin_swing_a2_inward = root(sine_square_a2)
+        cos_a2_outward = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2_inward/divisor_a2
         # rod 2
         pivot_2_x_outward = (
             0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_outward
@@ -628,7 +628,7 @@ class ArrayPrograms(Programs):
             - 0.5*root(3.0)*arm_length_1*cos_a2_outward
         )
         rod_2_y_outward = y - pivot_2_y_outward
-        sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
+        sin_a2_outward = -across_a2*cos_swing_a2/divisor_a2 - along_a2*sin_swing_a2_inward/divisor_a2
         # rod 2
         pivot_2_z_outward = (
             root(
@@ -646,8 +646,8 @@ class ArrayPrograms(Programs):
             )
             /swing_scale_a3
         )
-        sin_swing_a3_outward = -root(sine_square_a3)
-        cos_a3_outward = across_a2*sin_swing_a3_outward/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
+        sin_swing_a3_inward = root(sine_square_a3)
+        cos_a3_outward = along_a3*cos_swing_a3/divisor_a3 - across_a2*sin_swing_a3_inward/divisor_a3
         # rod 3
         pivot_3_x_outward = (
             0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_outward
@@ -660,7 +660,7 @@ class ArrayPrograms(Programs):
             - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
         )
         rod_3_y_outward = y - pivot_3_y_outward
-        sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
+        sin_a3_outward = -across_a2*cos_swing_a3/divisor_a3 - along_a3*sin_swing_a3_inward/divisor_a3
         # rod 3
         pivot_3_z_outward = (
             root(
@@ -708,6 +708,97 @@ class ArrayPrograms(Programs):
         )
         # A3: its turn
         axis_a3_outward = nearest_period(offset_a3 + atan2(sin_a3_outward, cos_a3_outward)/DEGREE, near_a3)
+        cos_a3_inward = across_a2*sin_swing_a3_inward/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
+        # rod 3
+        pivot_3_x_inward = (
+            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_inward
+            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
+        )
+        rod_3_x_inward = x - pivot_3_x_inward
+        # rod 3
+        pivot_3_y_inward = (
+            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3_inward
+            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
+        )
+        rod_3_y_inward = y - pivot_3_y_inward
+        sin_a3_inward = along_a3*sin_swing_a3_inward/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
+        # rod 3
+        pivot_3_z_inward = (
+            root(
+                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
+                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
+                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+            )
+            - arm_length_1*sin_a3_inward
+        )
+        rod_3_z_inward = z - pivot_3_z_inward
+        type2_rods_coplanar_outward_outward_inward = (
+            assembly_sign
+            *(
+                rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward
+                + rod_2_z_outward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
+                - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_z_inward*y
+            )
+            /(arm_length_2*arm_length_2*arm_length_2)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_outward_outward_inward = select(
+            type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0.0, 3.0,
+        )
+        # A3: its turn
+        axis_a3_inward = nearest_period(offset_a3 + atan2(sin_a3_inward, cos_a3_inward)/DEGREE, near_a3)
+        cos_a2_inward = across_a2*sin_swing_a2_inward/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
+        # rod 2
+        pivot_2_x_inward = (
+            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_inward
+            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
+        )
+        rod_2_x_inward = x - pivot_2_x_inward
+        # rod 2
+        pivot_2_y_inward = (
+            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
+            - 0.5*root(3.0)*arm_length_1*cos_a2_inward
+        )
+        rod_2_y_inward = y - pivot_2_y_inward
+        sin_a2_inward = along_a2*sin_swing_a2_inward/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
+        # rod 2
+        pivot_2_z_inward = (
+            root(
+                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
+                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
+                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
+            )
+            - arm_length_1*sin_a2_inward
+        )
+        rod_2_z_inward = z - pivot_2_z_inward
+        type2_rods_coplanar_outward_inward_outward = (
+            assembly_sign
+            *(
+                rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward
+                + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
+                - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
+            )
+            /(arm_length_2*arm_length_2*arm_length_2)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_outward_inward_outward = select(
+            type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0.0, 3.0,
+        )
+        # A2: its turn
+        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
+        type2_rods_coplanar_outward_inward_inward = (
+            assembly_sign
+            *(
+                rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward
+                + rod_2_z_inward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
+                - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_z_inward*y
+            )
+            /(arm_length_2*arm_length_2*arm_length_2)
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_outward_inward_inward = select(
+            type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0.0, 3.0,
+        )
         cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + span_1_z*sin_swing_a1_outward/divisor_a1
         # rod 1
         pivot_1_x_inward = (
@@ -740,97 +831,6 @@ class ArrayPrograms(Programs):
         )
         # A1: its turn
         axis_a1_inward = nearest_period(offset_a1 + atan2(sin_a1_inward, cos_a1_inward)/DEGREE, near_a1)
-        cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_x_inward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
-        rod_2_x_inward = x - pivot_2_x_inward
-        # rod 2
-        pivot_2_y_inward = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2_inward
-        )
-        rod_2_y_inward = y - pivot_2_y_inward
-        sin_a2_inward = -across_a2*cos_swing_a2/divisor_a2 - along_a2*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_z_inward = (
-            root(
-                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2_inward
-        )
-        rod_2_z_inward = z - pivot_2_z_inward
-        type2_rods_coplanar_outward_inward_outward = (
-            assembly_sign
-            *(
-                rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward
-                + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
-                - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
-            )
-            /(arm_length_2*arm_length_2*arm_length_2)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_outward = select(
-            type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0.0, 3.0,
-        )
-        # A2: its turn
-        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
-        type2_rods_coplanar_inward_inward_outward = (
-            assembly_sign
-            *(
-                rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward
-                + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
-                - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
-            )
-            /(arm_length_2*arm_length_2*arm_length_2)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_outward = select(
-            type2_rods_coplanar_inward_inward_outward >= min_type2_margin, 0.0, 3.0,
-        )
-        cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - across_a2*sin_swing_a3_outward/divisor_a3
-        # rod 3
-        pivot_3_x_inward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
-        rod_3_x_inward = x - pivot_3_x_inward
-        # rod 3
-        pivot_3_y_inward = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
-        rod_3_y_inward = y - pivot_3_y_inward
-        sin_a3_inward = -across_a2*cos_swing_a3/divisor_a3 - along_a3*sin_swing_a3_outward/divisor_a3
-        # rod 3
-        pivot_3_z_inward = (
-            root(
-                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3_inward
-        )
-        rod_3_z_inward = z - pivot_3_z_inward
-        type2_rods_coplanar_outward_outward_inward = (
-            assembly_sign
-            *(
-                rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward
-                + rod_2_z_outward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
-                - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_z_inward*y
-            )
-            /(arm_length_2*arm_length_2*arm_length_2)
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_inward = select(
-            type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0.0, 3.0,
-        )
-        # A3: its turn
-        axis_a3_inward = nearest_period(offset_a3 + atan2(sin_a3_inward, cos_a3_inward)/DEGREE, near_a3)
         type2_rods_coplanar_inward_outward_inward = (
             assembly_sign
             *(
@@ -844,18 +844,18 @@ class ArrayPrograms(Programs):
         refusal_inward_outward_inward = select(
             type2_rods_coplanar_inward_outward_inward >= min_type2_margin, 0.0, 3.0,
         )
-        type2_rods_coplanar_outward_inward_inward = (
+        type2_rods_coplanar_inward_inward_outward = (
             assembly_sign
             *(
-                rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward
-                + rod_2_z_inward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
-                - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_z_inward*y
+                rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward
+                + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
+                - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
             )
             /(arm_length_2*arm_length_2*arm_length_2)
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_inward = select(
-            type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0.0, 3.0,
+        refusal_inward_inward_outward = select(
+            type2_rods_coplanar_inward_inward_outward >= min_type2_margin, 0.0, 3.0,
         )
         type2_rods_coplanar_inward_inward_inward = (
             assembly_sign

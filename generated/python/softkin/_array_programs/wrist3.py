@@ -139,20 +139,15 @@ class ArrayPrograms(OrientationPrograms):
         )
         radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
         if everywhere(radius_c > 1e-11):
-            along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
-            cos_c = along_c/radius_c  # its reference where it is free
-            across_c = -r32*sigma_hand
-            sin_c = across_c/radius_c
+            direction_x_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_y_c = -r32*sigma_hand
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
-            length_c = select(radius_c > 1e-11, radius_c, 1.0)
-            cos_c = select(radius_c > 1e-11, along_c/length_c, cos(free_c))  # its reference where it is free
-            across_c = -r32*sigma_hand
-            sin_c = select(radius_c > 1e-11, across_c/length_c, sin(free_c))
-        r22_before_c = r22*cos_c + r21*sin_c
-        r12_before_c = r12*cos_c + r11*sin_c
-        sin_a = -r12_before_c
+            # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_x_c = select(radius_c > 1e-11, r31*sigma_hand, cos(free_c))
+            direction_y_c = select(radius_c > 1e-11, -r32*sigma_hand, sin(free_c))
+        r22_before_c = direction_x_c*r22 + direction_y_c*r21
+        sin_a = -direction_x_c*r12 - direction_y_c*r11
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
         axis_a = nearest_period(offset_a + atan2(sin_a, r22_before_c)/DEGREE, near_a)  # A: its turn
@@ -162,7 +157,7 @@ class ArrayPrograms(OrientationPrograms):
         axis_b = nearest_period(offset_b + atan2(c_radius_of_b, r33)/DEGREE, near_b)  # B: its turn
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
-        axis_c = nearest_period(offset_c + atan2(sin_c, cos_c)/DEGREE, near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + atan2(direction_y_c, direction_x_c)/DEGREE, near_c)  # C: its turn
         return (axis_a, axis_b, axis_c), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -280,34 +275,35 @@ class ArrayPrograms(OrientationPrograms):
         )
         radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
         if everywhere(radius_c > 1e-11):
-            cos_c_down = r31/radius_c  # its reference where it is free
-            sin_c_down = -r32/radius_c
-            cos_c_up = -cos_c_down  # its reference where it is free
-            sin_c_up = -sin_c_down
+            direction_x_c_down = r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_y_c_down = -r32
+            direction_x_c_up = -r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_y_c_up = -direction_y_c_down
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            length_c = select(radius_c > 1e-11, radius_c, 1.0)
-            cos_c_down = select(radius_c > 1e-11, r31/length_c, cos(free_c))  # its reference where it is free
-            sin_c_down = select(radius_c > 1e-11, -r32/length_c, sin(free_c))
-            cos_c_up = select(radius_c > 1e-11, -r31/length_c, cos(free_c))  # its reference where it is free
-            sin_c_up = select(radius_c > 1e-11, r32/length_c, sin(free_c))
-        r22_before_c_down = r22*cos_c_down + r21*sin_c_down
-        r12_before_c_down = r12*cos_c_down + r11*sin_c_down
+            # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_x_c_down = select(radius_c > 1e-11, r31, cos(free_c))
+            direction_y_c_down = select(radius_c > 1e-11, -r32, sin(free_c))
+            # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_x_c_up = select(radius_c > 1e-11, -r31, cos(free_c))
+            direction_y_c_up = select(radius_c > 1e-11, r32, sin(free_c))
+        r22_before_c_down = direction_x_c_down*r22 + direction_y_c_down*r21
+        sin_a_down = -direction_x_c_down*r12 - direction_y_c_down*r11
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        # A: its turn
-        axis_a_down = nearest_period(offset_a + atan2(-r12_before_c_down, r22_before_c_down)/DEGREE, near_a)
+        axis_a_down = nearest_period(offset_a + atan2(sin_a_down, r22_before_c_down)/DEGREE, near_a)  # A: its turn
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
         axis_b_down = nearest_period(offset_b + atan2(radius_c, r33)/DEGREE, near_b)  # B: its turn
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
-        axis_c_down = nearest_period(offset_c + atan2(sin_c_down, cos_c_down)/DEGREE, near_c)  # C: its turn
-        r22_before_c_up = r22*cos_c_up + r21*sin_c_up
-        r12_before_c_up = r12*cos_c_up + r11*sin_c_up
-        axis_a_up = nearest_period(offset_a + atan2(-r12_before_c_up, r22_before_c_up)/DEGREE, near_a)  # A: its turn
+        # C: its turn
+        axis_c_down = nearest_period(offset_c + atan2(direction_y_c_down, direction_x_c_down)/DEGREE, near_c)
+        r22_before_c_up = direction_x_c_up*r22 + direction_y_c_up*r21
+        sin_a_up = -direction_x_c_up*r12 - direction_y_c_up*r11
+        axis_a_up = nearest_period(offset_a + atan2(sin_a_up, r22_before_c_up)/DEGREE, near_a)  # A: its turn
         axis_b_up = nearest_period(offset_b + atan2(-radius_c, r33)/DEGREE, near_b)  # B: its turn
-        axis_c_up = nearest_period(offset_c + atan2(sin_c_up, cos_c_up)/DEGREE, near_c)  # C: its turn
+        axis_c_up = nearest_period(offset_c + atan2(direction_y_c_up, direction_x_c_up)/DEGREE, near_c)  # C: its turn
         return (
             ((axis_a_down, axis_b_down, axis_c_down), refused(status, 0.0)),
             ((axis_a_up, axis_b_up, axis_c_up), refused(status, 0.0)),

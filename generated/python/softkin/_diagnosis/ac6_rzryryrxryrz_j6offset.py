@@ -52,10 +52,11 @@ def branch(
     single_a6 = k.single_a6
     swing_scale_q3_closed = k.swing_scale_q3_closed
     if not (
-        abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-        and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-        and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-        and abs(ref_a3) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9 and abs(ref_a6) <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+        and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+        and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+        and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
+        and -1e9 <= ref_a6 <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (
@@ -161,10 +162,10 @@ def branch(
         indicator_elbow_tried = (a3*sin_q3_tried + d4*cos_q3_tried)/machine_scale
         residual_tried = (reach_tried*reach_tried - a2*a2)/(machine_scale*machine_scale)
         scanning = 0.0 if closing > 0.5 else 1.0
-        settled_ = 1.0 if (scanning <= 0.5) and ((closing >= 100.0) or (abs(residual_tried) <= 1e-14)) else 0.0
+        settled_ = 1.0 if (scanning <= 0.5) and ((closing >= 100.0) or (-1e-14 <= residual_tried <= 1e-14)) else 0.0
         accepted = (
             1.0
-            if (abs(residual_tried) <= 1e-12) and (
+            if (-1e-12 <= residual_tried <= 1e-12) and (
                 indicator_elbow_tried*sigma_elbow >= -1e-9
             ) and ((settled_ > 0.5) or (touching > 0.5))
             else 0.0
@@ -199,7 +200,7 @@ def branch(
         next_touching = (
             1.0
             if (inner <= 0.0) and (radius > 0.0) and (scanning > 0.5) and (crosses < 0.5) and (side < 0.0) and (simple < 0.5) and (touching < 0.5) and (
-                abs(behind) <= 1e-12
+                -1e-12 <= behind <= 1e-12
             )
             else 0.0
         )
@@ -265,15 +266,15 @@ def branch(
         cos_q6 = cos_q6_tried
         sin_q6 = sin_q6_tried
     else:
+        cos_q1 = cos_q1_closed
+        sin_q1 = sin_q1_closed
+        sin_swing_q3_closed = (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
         cos_swing_q3_closed = (
             (reach_closed*reach_closed - a2*a2 - effective_q3_closed*effective_q3_closed)/swing_scale_q3_closed
         )
-        sin_swing_q3_closed = (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
-        cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
-        sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
         if reach_closed > 1e-11*machine_scale:
-            arm_along_q2_closed = a3*sin_q3_closed + d4*cos_q3_closed
-            arm_across_q2_closed = a2 + a3*cos_q3_closed - d4*sin_q3_closed
+            arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed
+            arm_across_q2_closed = a2 + effective_q3_closed*cos_swing_q3_closed
             along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
             across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
             length_q2_closed = (
@@ -286,6 +287,12 @@ def branch(
         else:
             cos_q2_closed = cos(free_a2)
             sin_q2_closed = sin(free_a2)
+        cos_q2 = cos_q2_closed
+        sin_q2 = sin_q2_closed
+        cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
+        cos_q3 = cos_q3_closed
+        sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
+        sin_q3 = sin_q3_closed
         r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
         sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
         cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
@@ -301,12 +308,6 @@ def branch(
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             cos_q4_closed = cos(free_a4)
             sin_q4_closed = sin(free_a4)
-        cos_q1 = cos_q1_closed
-        sin_q1 = sin_q1_closed
-        cos_q2 = cos_q2_closed
-        sin_q2 = sin_q2_closed
-        cos_q3 = cos_q3_closed
-        sin_q3 = sin_q3_closed
         cos_q4 = cos_q4_closed
         sin_q4 = sin_q4_closed
         q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist

@@ -50,10 +50,11 @@ def branch(
     single_a6 = k.single_a6
     size_q6_of_q3 = k.size_q6_of_q3
     if not (
-        abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-        and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-        and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-        and abs(ref_a3) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9 and abs(ref_a6) <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+        and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+        and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+        and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
+        and -1e9 <= ref_a6 <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (
@@ -84,6 +85,8 @@ def branch(
     r21_from_q1 = r21*cos_q1 - r11*sin_q1
     r22_from_q1 = r22*cos_q1 - r12*sin_q1
     radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)
+    q6_radius_of_q5 = radius_q6*sigma_wrist
+    cos_q5 = r13*sin_q1 - r23*cos_q1
     if radius_q6 > 1e-11:
         along_q6 = -r21_from_q1*sigma_wrist
         cos_q6_before_q6_of_q3 = along_q6/radius_q6
@@ -93,91 +96,92 @@ def branch(
         free_a6 = (ref_a6 - offset_a6)*DEGREE
         cos_q6_before_q6_of_q3 = cos(free_a6)
         sin_q6_before_q6_of_q3 = sin(free_a6)
-    q6_radius_of_q5 = radius_q6*sigma_wrist
-    r23_from_q1 = r23*cos_q1 - r13*sin_q1
-    cos_q5 = -r23_from_q1
-    wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
-    wrist_x_from_q1_along = -d5*r31*cos_q5
     wrist_z = z - d6*r33
-    wrist_y_from_q1_fixed = wrist_z - d1
-    wrist_y_from_q1_along = d5*r32
-    wrist_x_from_q1_across = d5*r32*cos_q5
-    wrist_y_from_q1_across = d5*r31
-    wrist_x_from_q1_here = (
-        wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
-        + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
-    )
-    wrist_y_from_q1_here = (
-        wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
-        + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
-    )
-    value_q6_of_q3 = (
-        wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
-    )
-    if abs(value_q6_of_q3) <= size_q6_of_q3:
+    if radius_q6 > 0.01:
         cos_q6 = cos_q6_before_q6_of_q3
         sin_q6 = sin_q6_before_q6_of_q3
     else:
-        along_q6_of_q3 = (
-            2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+        wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+        wrist_x_from_q1_along = -d5*r31*cos_q5
+        wrist_y_from_q1_fixed = wrist_z - d1
+        wrist_y_from_q1_along = d5*r32
+        wrist_x_from_q1_across = d5*r32*cos_q5
+        wrist_y_from_q1_across = d5*r31
+        wrist_x_from_q1_here = (
+            wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
+            + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
         )
-        across_q6_of_q3 = (
-            2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+        wrist_y_from_q1_here = (
+            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
+            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
         )
-        swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-        if swing_q6_of_q3 > 1e-12*size_q6_of_q3:
-            level_q6_of_q3 = (
-                value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
-            )
-            highest_q6_of_q3 = (
-                1.0
-                if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
-                else (
-                    -1.0
-                    if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                    else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
-                )
-            )
-            lowest_q6_of_q3 = (
-                1.0
-                if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
-                else (
-                    -1.0
-                    if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                    else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
-                )
-            )
-        else:
-            highest_q6_of_q3 = 1.0
-            lowest_q6_of_q3 = -1.0
-        near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
-        far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
-        centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
-        angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3 + 0.0, cos_q6_before_q6_of_q3 + 0.0)
-        side_q6_of_q3 = (
-            1.0
-            if along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0
-            else -1.0
+        value_q6_of_q3 = (
+            wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
         )
-        moved_q6_of_q3 = nearest_on_arc(
-            angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-            0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
-        )
-        cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-        sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-        cost_q6_of_q3 = (
-            sqrt(
-                (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
-                + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
-            )
-            *radius_q6
-        )
-        if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:
-            cos_q6 = cos_q6_after_q6_of_q3
-            sin_q6 = sin_q6_after_q6_of_q3
+            along_q6_of_q3 = (
+                2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            )
+            across_q6_of_q3 = (
+                2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            )
+            swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+            if swing_q6_of_q3 > 1e-12*size_q6_of_q3:
+                level_q6_of_q3 = (
+                    value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
+                )
+                highest_q6_of_q3 = (
+                    1.0
+                    if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                    else (
+                        -1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                        else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                    )
+                )
+                lowest_q6_of_q3 = (
+                    1.0
+                    if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                    else (
+                        -1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                        else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                    )
+                )
+            else:
+                highest_q6_of_q3 = 1.0
+                lowest_q6_of_q3 = -1.0
+            near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
+            far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
+            centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
+            angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3 + 0.0, cos_q6_before_q6_of_q3 + 0.0)
+            side_q6_of_q3 = (
+                1.0
+                if along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0
+                else -1.0
+            )
+            moved_q6_of_q3 = nearest_on_arc(
+                angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+            )
+            cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+            sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+            cost_q6_of_q3 = (
+                sqrt(
+                    (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
+                    + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
+                )
+                *radius_q6
+            )
+            if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                cos_q6 = cos_q6_before_q6_of_q3
+                sin_q6 = sin_q6_before_q6_of_q3
+            else:
+                cos_q6 = cos_q6_after_q6_of_q3
+                sin_q6 = sin_q6_after_q6_of_q3
     r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
     r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
     wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56
@@ -191,46 +195,38 @@ def branch(
             - reach - abs(a2) - abs(a3)
         )
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-    cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
-    sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-    if reach > 1e-11*machine_scale:
-        arm_along_q2 = a2 + a3*cos_q3
-        arm_across_q2 = a3*sin_q3
-        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        length_q2 = (
-            sqrt(across_q2*across_q2 + along_q2*along_q2)
-            if across_q2*across_q2 + along_q2*along_q2 > 0.0
-            else 1.0
-        )
-        cos_q2 = along_q2/length_q2
-        sin_q2 = across_q2/length_q2
-    else:
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        cos_q2 = cos(free_a2)
-        sin_q2 = sin(free_a2)
     open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1
     near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
     axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE
     if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
         axis_a1 = nearest_period(axis_a1, near_a1)
+    cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
+    sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
+    if reach > 1e-11*machine_scale:
+        arm_along_q2 = a2 + a3*cos_q3
+        arm_across_q2 = a3*sin_q3
+        direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+        direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+    else:
+        free_a2 = (ref_a2 - offset_a2)*DEGREE
+        direction_x_q2 = cos(free_a2)
+        direction_y_q2 = sin(free_a2)
+    angle_q2 = arctan2(direction_y_q2 + 0.0, direction_x_q2 + 0.0)
     open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2
     near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-    axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE
+    axis_a2 = offset_a2 + angle_q2/DEGREE
     if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
         axis_a2 = nearest_period(axis_a2, near_a2)
+    angle_q3 = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
     open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3
     near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-    axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE
+    axis_a3 = offset_a3 + angle_q3/DEGREE
     if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
         axis_a3 = nearest_period(axis_a3, near_a3)
-    cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
-    sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
-    cos_q4 = r22_from_q1_before_q6*cos_q23 + r21_from_q1_before_q56*sin_q23
-    sin_q4 = r21_from_q1_before_q56*cos_q23 - r22_from_q1_before_q6*sin_q23
+    angle_with_q4 = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
     open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4
     near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-    axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4 + 0.0)/DEGREE
+    axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)/DEGREE
     if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
         axis_a4 = nearest_period(axis_a4, near_a4)
     open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5

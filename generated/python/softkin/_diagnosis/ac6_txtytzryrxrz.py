@@ -38,10 +38,10 @@ def branch(
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     if not (
-        abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-        and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-        and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9
-        and abs(ref_a6) <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+        and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+        and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a4 <= 1e9
+        and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (
@@ -52,25 +52,23 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: columns of length one, at right angles", 0.0)
     if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
         return Diagnosis(Status.BAD_INPUT, "not given: a right-handed frame", 0.0)
-    radius_a4 = sqrt(r13*r13 + r33*r33)
-    if radius_a4 > 1e-11:
-        along_a4 = r33*sigma_wrist
-        cos_a4 = along_a4/radius_a4
-        across_a4 = r13*sigma_wrist
-        sin_a4 = across_a4/radius_a4
-    else:
-        free_a4 = (ref_a4 - offset_a4)*DEGREE
-        cos_a4 = cos(free_a4)
-        sin_a4 = sin(free_a4)
     wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
     axis_a1 = offset_a1 + wrist_x
     wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
     axis_a2 = offset_a2 + wrist_y
     wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
     axis_a3 = offset_a3 + wrist_z
+    radius_a4 = sqrt(r13*r13 + r33*r33)
+    if radius_a4 > 1e-11:
+        direction_x_a4 = r33*sigma_wrist
+        direction_y_a4 = r13*sigma_wrist
+    else:
+        free_a4 = (ref_a4 - offset_a4)*DEGREE
+        direction_x_a4 = cos(free_a4)
+        direction_y_a4 = sin(free_a4)
     open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4
     near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-    axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4 + 0.0)/DEGREE
+    axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4 + 0.0)/DEGREE
     if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
         axis_a4 = nearest_period(axis_a4, near_a4)
     a4_radius_of_a5 = radius_a4*sigma_wrist
@@ -80,9 +78,8 @@ def branch(
     axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5 + 0.0)/DEGREE
     if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
         axis_a5 = nearest_period(axis_a5, near_a5)
-    r11_from_a4 = r11*cos_a4 - r31*sin_a4
-    r12_from_a4 = r12*cos_a4 - r32*sin_a4
-    sin_a6 = -r12_from_a4
+    r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
+    sin_a6 = direction_y_a4*r32 - direction_x_a4*r12
     open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6
     near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
     axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4 + 0.0)/DEGREE

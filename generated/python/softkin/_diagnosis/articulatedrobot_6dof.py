@@ -51,10 +51,11 @@ def branch(
     single_a6 = k.single_a6
     swing_scale_q3 = k.swing_scale_q3
     if not (
-        abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-        and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-        and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-        and abs(ref_a3) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9 and abs(ref_a6) <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+        and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+        and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+        and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
+        and -1e9 <= ref_a6 <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (
@@ -96,13 +97,16 @@ def branch(
             + 0.5*abs(a2 + effective_q3 - reach) + 0.5*abs(a2 + effective_q3 + reach) - a2 - effective_q3 - reach
         )
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-    cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+    open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1
+    near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+    axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE
+    if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+        axis_a1 = nearest_period(axis_a1, near_a1)
     sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-    cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
-    sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
+    cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
     if reach > 1e-11*machine_scale:
-        arm_along_q2 = d4*cos_q3 - a3*sin_q3
-        arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+        arm_along_q2 = -effective_q3*sin_swing_q3
+        arm_across_q2 = a2 + effective_q3*cos_swing_q3
         along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
         across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         length_q2 = (
@@ -116,6 +120,18 @@ def branch(
         free_a2 = (ref_a2 - offset_a2)*DEGREE
         cos_q2 = cos(free_a2)
         sin_q2 = sin(free_a2)
+    open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2
+    near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+    axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE
+    if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+        axis_a2 = nearest_period(axis_a2, near_a2)
+    cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
+    sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
+    open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3
+    near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+    axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE
+    if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+        axis_a3 = nearest_period(axis_a3, near_a3)
     r13_from_q1 = r13*cos_q1 + r23*sin_q1
     sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
     cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
@@ -123,37 +139,19 @@ def branch(
     r23_from_q1 = r23*cos_q1 - r13*sin_q1
     radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
     if radius_q4 > 1e-11:
-        along_q4 = -r13_from_q123*sigma_hand
-        cos_q4 = along_q4/radius_q4
-        across_q4 = r23_from_q1*sigma_hand
-        sin_q4 = across_q4/radius_q4
+        direction_x_q4 = -r13_from_q123*sigma_hand
+        direction_y_q4 = r23_from_q1*sigma_hand
     else:
         free_a4 = (ref_a4 - offset_a4)*DEGREE
-        cos_q4 = cos(free_a4)
-        sin_q4 = sin(free_a4)
-    open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1
-    near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-    axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE
-    if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
-        axis_a1 = nearest_period(axis_a1, near_a1)
-    open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2
-    near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-    axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE
-    if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
-        axis_a2 = nearest_period(axis_a2, near_a2)
-    open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3
-    near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-    axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE
-    if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
-        axis_a3 = nearest_period(axis_a3, near_a3)
+        direction_x_q4 = cos(free_a4)
+        direction_y_q4 = sin(free_a4)
     open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4
     near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-    axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4 + 0.0)/DEGREE
+    axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4 + 0.0)/DEGREE
     if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
         axis_a4 = nearest_period(axis_a4, near_a4)
     q4_radius_of_q5 = radius_q4*sigma_hand
-    r23_from_q123 = -r13_from_q1*cos_q23 - r33*sin_q23
-    cos_q5 = -r23_from_q123
+    cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23
     open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5
     near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
     axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5 + 0.0)/DEGREE
@@ -162,11 +160,11 @@ def branch(
     r21_from_q1 = r21*cos_q1 - r11*sin_q1
     r11_from_q1 = r11*cos_q1 + r21*sin_q1
     r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-    r21_from_q1234 = -r21_from_q1*cos_q4 - r11_from_q123*sin_q4
+    r21_from_q1234 = -direction_x_q4*r21_from_q1 - direction_y_q4*r11_from_q123
     r22_from_q1 = r22*cos_q1 - r12*sin_q1
     r12_from_q1 = r12*cos_q1 + r22*sin_q1
     r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-    r22_from_q1234 = -r22_from_q1*cos_q4 - r12_from_q123*sin_q4
+    r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
     open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6
     near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
     axis_a6 = offset_a6 + arctan2(r21_from_q1234, r22_from_q1234 + 0.0)/DEGREE

@@ -24,8 +24,9 @@ def branch(
     offset_c = k.offset_c
     single_c = k.single_c
     if not (
-        abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-        and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_c) <= 1e9
+        -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+        and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+        and -1e9 <= r33 <= 1e9 and -1e9 <= ref_c <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (
@@ -41,12 +42,9 @@ def branch(
     heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
     if not (heading_length > 1e-11):
         return Diagnosis(Status.UNREACHABLE, "the tool points exactly the opposite way", 0.0)
-    heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-    cos_heading = heading_along/heading_divisor
-    sin_heading = heading_across/heading_divisor
     open_c = mid_c if single_c > 0.0 else ref_c
     near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
-    axis_c = offset_c + arctan2(sin_heading, cos_heading + 0.0)/DEGREE
+    axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE
     if not -180.000000001 <= axis_c - near_c < 179.999999999:
         axis_c = nearest_period(axis_c, near_c)
     return (axis_c,)

@@ -26,35 +26,38 @@ def branch(
     offset_r = k.offset_r
     offset_theta = k.offset_theta
     single_theta = k.single_theta
-    if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_phi) <= 1e9 and abs(ref_theta) <= 1e9):
+    if not (
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_phi <= 1e9
+        and -1e9 <= ref_theta <= 1e9
+    ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     radius_theta = sqrt(x*x + y*y)
+    radius_phi = sqrt(radius_theta*radius_theta + z*z)
+    axis_r = offset_r + radius_phi
     if radius_theta > 1e-11*machine_scale:
-        cos_theta = x/radius_theta
-        sin_theta = y/radius_theta
+        direction_x_theta = x
+        direction_y_theta = y
     else:
         free_theta = (ref_theta - offset_theta)*DEGREE
-        cos_theta = cos(free_theta)
-        sin_theta = sin(free_theta)
-    radius_phi = sqrt(radius_theta*radius_theta + z*z)
-    if radius_phi > 1e-11*machine_scale:
-        cos_phi = z/radius_phi
-        sin_phi = radius_theta/radius_phi
-    else:
-        free_phi = (ref_phi - offset_phi)*DEGREE
-        cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-    axis_r = offset_r + radius_phi
+        direction_x_theta = cos(free_theta)
+        direction_y_theta = sin(free_theta)
     open_theta = mid_theta if single_theta > 0.0 else ref_theta
     near_theta = (
         (360.0*turn_theta - 360.0 if turn_theta > 0.0 else 360.0*turn_theta)
         if abs(turn_theta) > 0.0
         else open_theta
     )
-    axis_theta = offset_theta + arctan2(sin_theta, cos_theta + 0.0)/DEGREE
+    axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE
     if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
         axis_theta = nearest_period(axis_theta, near_theta)
-    axis_phi = offset_phi + arctan2(sin_phi + 0.0, cos_phi + 0.0)/DEGREE
+    if radius_phi > 1e-11*machine_scale:
+        direction_x_phi = z
+        direction_y_phi = radius_theta
+    else:
+        free_phi = (ref_phi - offset_phi)*DEGREE
+        direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+        direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+    axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
     return (axis_r, axis_theta, axis_phi)
 
 

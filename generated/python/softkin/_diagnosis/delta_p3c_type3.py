@@ -51,8 +51,8 @@ def branch(
     tcp_radius_2 = k.tcp_radius_2
     tcp_radius_3 = k.tcp_radius_3
     if not (
-        abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-        and abs(ref_a3) <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+        and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1

@@ -20,7 +20,7 @@ def branch(
     machine_scale = k.machine_scale
     offset_x = k.offset_x
     offset_y = k.offset_y
-    if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+    if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale

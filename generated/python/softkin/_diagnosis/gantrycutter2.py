@@ -29,9 +29,9 @@ def branch(
     offset_y = k.offset_y
     single_r = k.single_r
     if not (
-        abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-        and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-        and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_r) <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+        and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+        and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_r <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (
@@ -52,13 +52,10 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     axis_x = offset_x + x
     axis_y = offset_y + y
-    heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-    cos_heading = heading_along/heading_divisor
-    sin_heading = heading_across/heading_divisor
-    sin_r = direction_r*sin_heading
+    sin_r = direction_r*heading_across
     open_r = mid_r if single_r > 0.0 else ref_r
     near_r = (360.0*turn_r - 360.0 if turn_r > 0.0 else 360.0*turn_r) if abs(turn_r) > 0.0 else open_r
-    axis_r = offset_r + arctan2(sin_r, cos_heading + 0.0)/DEGREE
+    axis_r = offset_r + arctan2(sin_r, heading_along + 0.0)/DEGREE
     if not -180.000000001 <= axis_r - near_r < 179.999999999:
         axis_r = nearest_period(axis_r, near_r)
     return (axis_x, axis_y, axis_r)

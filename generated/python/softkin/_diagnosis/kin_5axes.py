@@ -34,9 +34,10 @@ def branch(
     tool_length = k.tool_length
     tool_side = k.tool_side
     if not (
-        abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-        and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-        and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a) <= 1e9 and abs(ref_b) <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+        and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+        and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a <= 1e9
+        and -1e9 <= ref_b <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (
@@ -47,27 +48,25 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: columns of length one, at right angles", 0.0)
     if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
         return Diagnosis(Status.BAD_INPUT, "not given: a right-handed frame", 0.0)
-    r13_of_a = r13/tool_side
-    r23_of_a = r23/tool_side
-    radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)
-    if radius_a > 1e-11:
-        along_a = r13_of_a*sigma_roll
-        cos_a = along_a/radius_a
-        across_a = r23_of_a*sigma_roll
-        sin_a = across_a/radius_a
-    else:
-        free_a = (ref_a - offset_a)*DEGREE
-        cos_a = cos(free_a)
-        sin_a = sin(free_a)
     wrist_x = x - r13*tool_length*tool_side
     axis_x = offset_x + wrist_x
     wrist_y = y - r23*tool_length*tool_side
     axis_y = offset_y + wrist_y
     wrist_z = z - r33*tool_length*tool_side
     axis_z = offset_z + wrist_z
+    r13_of_a = r13/tool_side
+    r23_of_a = r23/tool_side
+    radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)
+    if radius_a > 1e-11:
+        direction_x_a = r13_of_a*sigma_roll
+        direction_y_a = r23_of_a*sigma_roll
+    else:
+        free_a = (ref_a - offset_a)*DEGREE
+        direction_x_a = cos(free_a)
+        direction_y_a = sin(free_a)
     open_a = mid_a if single_a > 0.0 else ref_a
     near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a
-    axis_a = offset_a + arctan2(sin_a, cos_a + 0.0)/DEGREE
+    axis_a = offset_a + arctan2(direction_y_a, direction_x_a + 0.0)/DEGREE
     if not -180.000000001 <= axis_a - near_a < 179.999999999:
         axis_a = nearest_period(axis_a, near_a)
     a_radius_of_b = radius_a*sigma_roll

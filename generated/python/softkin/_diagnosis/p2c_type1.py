@@ -34,7 +34,10 @@ def branch(
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     tcp_displacement = k.tcp_displacement
-    if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
+    if not (
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+        and -1e9 <= ref_a2 <= 1e9
+    ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale

@@ -25,7 +25,7 @@ def branch(
     offset_a1 = k.offset_a1
     offset_a2 = k.offset_a2
     span_1_x = k.span_1_x
-    if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+    if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale

@@ -31,7 +31,10 @@ def branch(
     scale_a2_from_a1 = k.scale_a2_from_a1
     single_a1 = k.single_a1
     single_a2 = k.single_a2
-    if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
+    if not (
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+        and -1e9 <= ref_a2 <= 1e9
+    ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale
@@ -54,29 +57,22 @@ def branch(
     if reach > 1e-11*machine_scale:
         arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
         arm_across_a1 = link_length_2*sin_a2_from_a1
-        along_a1 = arm_across_a1*y + arm_along_a1*x
-        across_a1 = arm_along_a1*y - arm_across_a1*x
-        length_a1 = (
-            sqrt(across_a1*across_a1 + along_a1*along_a1)
-            if across_a1*across_a1 + along_a1*along_a1 > 0.0
-            else 1.0
-        )
-        cos_a1 = along_a1/length_a1
-        sin_a1 = across_a1/length_a1
+        direction_x_a1 = arm_across_a1*y + arm_along_a1*x
+        direction_y_a1 = arm_along_a1*y - arm_across_a1*x
     else:
         free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_a1 = cos(free_a1)
-        sin_a1 = sin(free_a1)
+        direction_x_a1 = cos(free_a1)
+        direction_y_a1 = sin(free_a1)
+    angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
     open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1
     near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-    axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE
+    axis_a1 = offset_a1 + angle_a1/DEGREE
     if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
         axis_a1 = nearest_period(axis_a1, near_a1)
-    cos_a2 = cos_a1*cos_a2_from_a1 - sin_a1*sin_a2_from_a1
-    sin_a2 = cos_a1*sin_a2_from_a1 + cos_a2_from_a1*sin_a1
+    angle_a2_from_a1 = arctan2(sin_a2_from_a1 + 0.0, cos_a2_from_a1 + 0.0)
     open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2
     near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-    axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE
+    axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)/DEGREE
     if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
         axis_a2 = nearest_period(axis_a2, near_a2)
     return (axis_a1, axis_a2)

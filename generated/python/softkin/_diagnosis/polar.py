@@ -25,22 +25,22 @@ def branch(
     offset_c = k.offset_c
     offset_r = k.offset_r
     single_c = k.single_c
-    if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_c) <= 1e9):
+    if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (abs(z) <= 1e-6*machine_scale):
         missing = abs(z) - 1e-6*machine_scale
         return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     radius_c = sqrt(x*x + y*y)
     if radius_c > 1e-11*machine_scale:
-        cos_c = x/radius_c
-        sin_c = y/radius_c
+        direction_x_c = x
+        direction_y_c = y
     else:
         free_c = (ref_c - offset_c)*DEGREE
-        cos_c = cos(free_c)
-        sin_c = sin(free_c)
+        direction_x_c = cos(free_c)
+        direction_y_c = sin(free_c)
     open_c = mid_c if single_c > 0.0 else ref_c
     near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
-    axis_c = offset_c + arctan2(sin_c, cos_c + 0.0)/DEGREE
+    axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE
     if not -180.000000001 <= axis_c - near_c < 179.999999999:
         axis_c = nearest_period(axis_c, near_c)
     axis_r = offset_r + radius_c

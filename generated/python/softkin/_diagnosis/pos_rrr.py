@@ -40,8 +40,8 @@ def branch(
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
     if not (
-        abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-        and abs(ref_a3) <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+        and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     distance_q1 = sqrt(x*x + y*y)
@@ -73,36 +73,29 @@ def branch(
             - reach
         )
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-    cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
-    sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-    cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
-    sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
-    if reach > 1e-11*machine_scale:
-        arm_along_q2 = d4*cos_q3 - a3*sin_q3
-        arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        length_q2 = (
-            sqrt(across_q2*across_q2 + along_q2*along_q2)
-            if across_q2*across_q2 + along_q2*along_q2 > 0.0
-            else 1.0
-        )
-        cos_q2 = along_q2/length_q2
-        sin_q2 = across_q2/length_q2
-    else:
-        free_a2 = (ref_a2 - offset_a2)*DEGREE
-        cos_q2 = cos(free_a2)
-        sin_q2 = sin(free_a2)
     open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1
     near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
     axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE
     if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
         axis_a1 = nearest_period(axis_a1, near_a1)
+    sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
+    cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+    if reach > 1e-11*machine_scale:
+        arm_along_q2 = -effective_q3_2*sin_swing_q3
+        arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
+        direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+        direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+    else:
+        free_a2 = (ref_a2 - offset_a2)*DEGREE
+        direction_x_q2 = cos(free_a2)
+        direction_y_q2 = sin(free_a2)
     open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2
     near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-    axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE
+    axis_a2 = offset_a2 + arctan2(direction_y_q2, direction_x_q2 + 0.0)/DEGREE
     if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
         axis_a2 = nearest_period(axis_a2, near_a2)
+    cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
+    sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
     open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3
     near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
     axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE

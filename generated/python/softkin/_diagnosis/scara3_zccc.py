@@ -38,10 +38,10 @@ def branch(
     single_a3 = k.single_a3
     single_a4 = k.single_a4
     if not (
-        abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-        and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-        and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a2) <= 1e9 and abs(ref_a3) <= 1e9
-        and abs(ref_a4) <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+        and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+        and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a2 <= 1e9
+        and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (
@@ -74,42 +74,34 @@ def branch(
             - link_length_1 - link_length_2 - reach
         )
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+    axis_a1 = offset_a1 + z
     cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
     sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
     if reach > 1e-11*machine_scale:
         arm_along_a2 = link_length_1 + link_length_2*cos_a3
         arm_across_a2 = link_length_2*sin_a3
-        along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
-        across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-        length_a2 = (
-            sqrt(across_a2*across_a2 + along_a2*along_a2)
-            if across_a2*across_a2 + along_a2*along_a2 > 0.0
-            else 1.0
-        )
-        cos_a2 = along_a2/length_a2
-        sin_a2 = across_a2/length_a2
+        direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
+        direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
     else:
         free_a2 = (ref_a2 - offset_a2)*DEGREE
-        cos_a2 = cos(free_a2)
-        sin_a2 = sin(free_a2)
-    axis_a1 = offset_a1 + z
+        direction_x_a2 = cos(free_a2)
+        direction_y_a2 = sin(free_a2)
+    angle_a2 = arctan2(direction_y_a2 + 0.0, direction_x_a2 + 0.0)
     open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2
     near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-    axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE
+    axis_a2 = offset_a2 + angle_a2/DEGREE
     if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
         axis_a2 = nearest_period(axis_a2, near_a2)
+    angle_a3 = arctan2(sin_a3 + 0.0, cos_a3 + 0.0)
     open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3
     near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-    axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE
+    axis_a3 = offset_a3 + angle_a3/DEGREE
     if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
         axis_a3 = nearest_period(axis_a3, near_a3)
-    cos_a23 = cos_a2*cos_a3 - sin_a2*sin_a3
-    sin_a23 = cos_a2*sin_a3 + cos_a3*sin_a2
-    cos_a4 = cos_a23*cos_heading + sin_a23*sin_heading
-    sin_a4 = cos_a23*sin_heading - cos_heading*sin_a23
+    angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
     open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4
     near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-    axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4 + 0.0)/DEGREE
+    axis_a4 = offset_a4 + (angle_heading - angle_a2 - angle_a3)/DEGREE
     if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
         axis_a4 = nearest_period(axis_a4, near_a4)
     return (axis_a1, axis_a2, axis_a3, axis_a4)

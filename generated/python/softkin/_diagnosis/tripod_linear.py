@@ -30,7 +30,7 @@ def branch(
     outer_radius = k.outer_radius
     sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
     sin_rail_angle = k.sin_rail_angle
-    if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+    if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     span_1_x = outer_radius + x - inner_radius
     root_square_a1 = (

@@ -38,7 +38,7 @@ def branch(
     rail_y_2 = k.rail_y_2
     rail_y_3 = k.rail_y_3
     tcp_displacement = k.tcp_displacement
-    if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+    if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     span_1_x = x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1
     span_1_y = y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1

@@ -39,8 +39,8 @@ def branch(
     single_a3 = k.single_a3
     stewart_radius = k.stewart_radius
     if not (
-        abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-        and abs(ref_a3) <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+        and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)

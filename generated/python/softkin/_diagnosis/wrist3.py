@@ -31,9 +31,9 @@ def branch(
     single_b = k.single_b
     single_c = k.single_c
     if not (
-        abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-        and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a) <= 1e9
-        and abs(ref_b) <= 1e9 and abs(ref_c) <= 1e9
+        -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+        and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+        and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9 and -1e9 <= ref_c <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     if not (
@@ -46,17 +46,14 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: a right-handed frame", 0.0)
     radius_c = sqrt(r31*r31 + r32*r32)
     if radius_c > 1e-11:
-        along_c = r31*sigma_hand
-        cos_c = along_c/radius_c
-        across_c = -r32*sigma_hand
-        sin_c = across_c/radius_c
+        direction_x_c = r31*sigma_hand
+        direction_y_c = -r32*sigma_hand
     else:
         free_c = (ref_c - offset_c)*DEGREE
-        cos_c = cos(free_c)
-        sin_c = sin(free_c)
-    r22_before_c = r22*cos_c + r21*sin_c
-    r12_before_c = r12*cos_c + r11*sin_c
-    sin_a = -r12_before_c
+        direction_x_c = cos(free_c)
+        direction_y_c = sin(free_c)
+    r22_before_c = direction_x_c*r22 + direction_y_c*r21
+    sin_a = -direction_x_c*r12 - direction_y_c*r11
     open_a = mid_a if single_a > 0.0 else ref_a
     near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a
     axis_a = offset_a + arctan2(sin_a, r22_before_c + 0.0)/DEGREE
@@ -70,7 +67,7 @@ def branch(
         axis_b = nearest_period(axis_b, near_b)
     open_c = mid_c if single_c > 0.0 else ref_c
     near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c
-    axis_c = offset_c + arctan2(sin_c, cos_c + 0.0)/DEGREE
+    axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE
     if not -180.000000001 <= axis_c - near_c < 179.999999999:
         axis_c = nearest_period(axis_c, near_c)
     return (axis_a, axis_b, axis_c)

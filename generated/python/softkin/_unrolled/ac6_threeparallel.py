@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -60,7 +60,6 @@ def unrolled(k: Constants) -> Unrolled:
     a2_plus_a3 = a2 + a3
     a2_minus_a3 = a2 - a3
     scale_q3_squared = scale_q3*scale_q3
-    offset_a3_times_2 = 2.0*offset_a3
     offset_a5_times_2 = 2.0*offset_a5
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -70,10 +69,11 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9 and abs(ref_a6) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
+            and -1e9 <= ref_a6 <= 1e9
         ):
             return 8*(2.0,)
         # columns of length one, at right angles
@@ -96,449 +96,357 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_q1 >= -1e-12):
             return 8*(3.0,)
         if distance_q1 > machine_scale_times_free_angle:
+            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
+            sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
             cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1_left = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
-            cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_left = (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1
-            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
+            cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
+            # its reference where it is free
+            cos_q1_left = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
+            sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
+            cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
+            sin_q1_left = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
+            # its reference where it is free
+            cos_q1_right = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
+            sin_q1_right = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_left = cos(free_a1)  # its reference where it is free
             sin_q1_left = sin(free_a1)
             cos_q1_right = cos_q1_left  # its reference where it is free
             sin_q1_right = sin_q1_left
-        r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
-        r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
-        # q6: direction and distance of a point
-        radius_q6_left = sqrt(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
-        if radius_q6_left > 1e-11:
-            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
-            cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down
+        cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_left + wrist_y*sin_q1_left
+        r21_from_q1 = r21*cos_q1_left - r11*sin_q1_left
+        r22_from_q1 = r22*cos_q1_left - r12*sin_q1_left
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        r33_times_radius_q6 = r33*radius_q6
+        cos_q5 = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
+        if radius_q6 > 1e-11:
+            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6  # its reference where it is free
+            sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_left_down = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_left_up = cos_q6_before_q6_of_q3_left_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = sin_q6_before_q6_of_q3_left_down
-        r23_from_q1_left = r23*cos_q1_left - r13*sin_q1_left
-        wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
-        wrist_x_from_q1_along_left = d5*r23_from_q1_left*r31
+            cos_q6_before_q6_of_q3_down = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         wrist_z = z - d6*r33
-        wrist_y_from_q1_fixed = wrist_z - d1
-        wrist_y_from_q1_along = d5*r32
-        wrist_x_from_q1_across_left = -d5*r23_from_q1_left*r32
-        wrist_y_from_q1_across = d5*r31
-        wrist_x_from_q1_here_left_down = (
-            wrist_x_from_q1_fixed_left_down + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_down
-            + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_down
-        )
-        wrist_y_from_q1_here_left_down = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_down
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_down
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_left_down = (
-            wrist_x_from_q1_here_left_down*wrist_x_from_q1_here_left_down
-            + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2_squared_plus_a3_squared
-        )
-        if abs(value_q6_of_q3_left_down) <= size_q6_of_q3:
-            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+        if radius_q6 > 0.01:
+            cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+            sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+            cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+            sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
         else:
-            along_q6_of_q3_left_down = (
-                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_down
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
+            wrist_x_from_q1_fixed_down = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_x_from_q1_here_down = (
+                wrist_x_from_q1_fixed_down + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_down
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_down
             )
-            across_q6_of_q3_left_down = (
-                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_down
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            wrist_y_from_q1_here_down = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_down
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_down
             )
-            swing_q6_of_q3_left_down = sqrt(
-                across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_down = (
+                wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
+                - a2_squared_plus_a3_squared
             )
-            if swing_q6_of_q3_left_down > size_q6_of_q3_times_rounding:
-                level_q6_of_q3_left_down = (
-                    value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
-                    - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_left_down = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down
-                    )
-                )
-                lowest_q6_of_q3_left_down = (
-                    1.0
-                    if (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down < -1.0
-                        else (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down
-                    )
-                )
+            if abs(value_q6_of_q3_down) <= size_q6_of_q3:
+                cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
             else:
-                highest_q6_of_q3_left_down = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_left_down = -1.0
-            near_q6_of_q3_left_down = arctan2(
-                root((1.0 - highest_q6_of_q3_left_down)*(1.0 + highest_q6_of_q3_left_down)) + 0.0,
-                highest_q6_of_q3_left_down + 0.0,
-            )
-            far_q6_of_q3_left_down = arctan2(
-                root((1.0 - lowest_q6_of_q3_left_down)*(1.0 + lowest_q6_of_q3_left_down)) + 0.0,
-                lowest_q6_of_q3_left_down + 0.0,
-            )
-            centre_q6_of_q3_left_down = arctan2(across_q6_of_q3_left_down + 0.0, along_q6_of_q3_left_down + 0.0)
-            angle_q6_of_q3_left_down = arctan2(
-                sin_q6_before_q6_of_q3_left_down + 0.0, cos_q6_before_q6_of_q3_left_down + 0.0,
-            )
-            side_q6_of_q3_left_down = (
-                1.0
-                if along_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down - across_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_left_down = nearest_on_arc(
-                angle_q6_of_q3_left_down,
-                (
-                    centre_q6_of_q3_left_down
-                    + 0.5*(far_q6_of_q3_left_down + near_q6_of_q3_left_down)*side_q6_of_q3_left_down
-                ),
-                0.5*far_q6_of_q3_left_down - 0.5*near_q6_of_q3_left_down,
-            )
-            cos_q6_after_q6_of_q3_left_down = cos(moved_q6_of_q3_left_down)
-            sin_q6_after_q6_of_q3_left_down = sin(moved_q6_of_q3_left_down)
-            # what the motion changes of the pose
-            cost_q6_of_q3_left_down = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down
-                    )*(cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down)
-                    + (
-                        sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down
-                    )*(sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down)
+                along_q6_of_q3_down = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_down
                 )
-                *radius_q6_left
+                across_q6_of_q3_down = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_down
+                )
+                swing_q6_of_q3_down = sqrt(
+                    across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
+                )
+                if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3_down = (
+                        value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
+                        - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
+                    )
+                    # the arc: cosines from its centre
+                    highest_q6_of_q3_down = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down
+                        )
+                    )
+                    lowest_q6_of_q3_down = (
+                        1.0
+                        if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down < -1.0
+                            else (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down
+                        )
+                    )
+                else:
+                    highest_q6_of_q3_down = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_down = -1.0
+                near_q6_of_q3_down = arctan2(
+                    root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)) + 0.0, highest_q6_of_q3_down + 0.0,
+                )
+                far_q6_of_q3_down = arctan2(
+                    root((1.0 - lowest_q6_of_q3_down)*(1.0 + lowest_q6_of_q3_down)) + 0.0, lowest_q6_of_q3_down + 0.0,
+                )
+                centre_q6_of_q3_down = arctan2(across_q6_of_q3_down + 0.0, along_q6_of_q3_down + 0.0)
+                angle_q6_of_q3_down = arctan2(sin_q6_before_q6_of_q3_down + 0.0, cos_q6_before_q6_of_q3_down + 0.0)
+                side_q6_of_q3_down = (
+                    1.0
+                    if along_q6_of_q3_down*sin_q6_before_q6_of_q3_down - across_q6_of_q3_down*cos_q6_before_q6_of_q3_down >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3_down = nearest_on_arc(
+                    angle_q6_of_q3_down,
+                    centre_q6_of_q3_down + 0.5*(far_q6_of_q3_down + near_q6_of_q3_down)*side_q6_of_q3_down,
+                    0.5*far_q6_of_q3_down - 0.5*near_q6_of_q3_down,
+                )
+                cos_q6_after_q6_of_q3_down = cos(moved_q6_of_q3_down)
+                sin_q6_after_q6_of_q3_down = sin(moved_q6_of_q3_down)
+                # what the motion changes of the pose
+                cost_q6_of_q3_down = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down
+                        )*(cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down)
+                        + (
+                            sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down
+                        )*(sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down)
+                    )
+                    *radius_q6
+                )
+                if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                    sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                else:
+                    cos_q6_down = cos_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+                    sin_q6_down = sin_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+            wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+            wrist_x_from_q1_here_up = (
+                wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_up
             )
-            if cost_q6_of_q3_left_down > 1e-12 and radius_q6_left > 1e-11:
-                cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-                sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+            wrist_y_from_q1_here_up = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_up
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_up
+            )
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_up = (
+                wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
+                - a2_squared_plus_a3_squared
+            )
+            if abs(value_q6_of_q3_up) <= size_q6_of_q3:
+                cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
             else:
-                cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
-                sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
-        r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
-        r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
+                along_q6_of_q3_up = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_up
+                )
+                across_q6_of_q3_up = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
+                )
+                swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
+                if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3_up = (
+                        value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
+                        - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
+                    )
+                    # the arc: cosines from its centre
+                    highest_q6_of_q3_up = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up
+                        )
+                    )
+                    lowest_q6_of_q3_up = (
+                        1.0
+                        if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up < -1.0
+                            else (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up
+                        )
+                    )
+                else:
+                    highest_q6_of_q3_up = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_up = -1.0
+                near_q6_of_q3_up = arctan2(
+                    root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)) + 0.0, highest_q6_of_q3_up + 0.0,
+                )
+                far_q6_of_q3_up = arctan2(
+                    root((1.0 - lowest_q6_of_q3_up)*(1.0 + lowest_q6_of_q3_up)) + 0.0, lowest_q6_of_q3_up + 0.0,
+                )
+                centre_q6_of_q3_up = arctan2(across_q6_of_q3_up + 0.0, along_q6_of_q3_up + 0.0)
+                angle_q6_of_q3_up = arctan2(sin_q6_before_q6_of_q3_up + 0.0, cos_q6_before_q6_of_q3_up + 0.0)
+                side_q6_of_q3_up = (
+                    1.0
+                    if along_q6_of_q3_up*sin_q6_before_q6_of_q3_up - across_q6_of_q3_up*cos_q6_before_q6_of_q3_up >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3_up = nearest_on_arc(
+                    angle_q6_of_q3_up, centre_q6_of_q3_up + 0.5*(far_q6_of_q3_up + near_q6_of_q3_up)*side_q6_of_q3_up,
+                    0.5*far_q6_of_q3_up - 0.5*near_q6_of_q3_up,
+                )
+                cos_q6_after_q6_of_q3_up = cos(moved_q6_of_q3_up)
+                sin_q6_after_q6_of_q3_up = sin(moved_q6_of_q3_up)
+                # what the motion changes of the pose
+                cost_q6_of_q3_up = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up
+                        )*(cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up)
+                        + (
+                            sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up
+                        )*(sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up)
+                    )
+                    *radius_q6
+                )
+                if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                    sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                else:
+                    cos_q6_up = cos_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+                    sin_q6_up = sin_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+        r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
+        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
         # what the unknown links must span
-        wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
-        r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
-        # what the unknown links must span
-        wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
-        reach_left_down = sqrt(
-            wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
-        )
-        cos_q3_left_down = (reach_left_down*reach_left_down - a2_squared_plus_a3_squared)/scale_q3
+        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        d1_minus_wrist_z = d1 - wrist_z
+        r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
+        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
-        sine_square_q3_left_down = (
-            (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down)*(a2_plus_a3 + reach_left_down)
-            *(a2_plus_a3 - reach_left_down)/scale_q3_squared
+        sine_square_q3_down = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
-        sin_q3_left_up_down = (sqrt(sine_square_q3_left_down) if sine_square_q3_left_down > 0.0 else 0.0)
-        if reach_left_down > machine_scale_times_free_angle:
-            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_down = (
-                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
-            )
-            across_q2_left_up_down = (
-                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
-            )
-            length_q2_squared_left_up_down = (
-                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
-            )
-            length_q2_left_up_down = sqrt(length_q2_squared_left_up_down) if length_q2_squared_left_up_down > 0.0 else 1.0
-            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
-            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_down = (
-                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
-            )
-            across_q2_left_down_down = (
-                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
-            )
-            length_q2_squared_left_down_down = (
-                across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
-            )
-            length_q2_left_down_down = (
-                sqrt(length_q2_squared_left_down_down)
-                if length_q2_squared_left_down_down > 0.0
-                else 1.0
-            )
-            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
-            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
+        sin_q3 = (sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
+            angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_left_up_down = cos(free_a2)  # its reference where it is free
-            sin_q2_left_up_down = sin(free_a2)
-            cos_q2_left_down_down = cos_q2_left_up_down  # its reference where it is free
-            sin_q2_left_down_down = sin_q2_left_up_down
-        wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
-        wrist_x_from_q1_here_left_up = (
-            wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
-            + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_up
-        )
-        wrist_y_from_q1_here_left_up = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_up
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_up
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_left_up = (
-            wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
-            + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2_squared_plus_a3_squared
-        )
-        if abs(value_q6_of_q3_left_up) <= size_q6_of_q3:
-            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-        else:
-            along_q6_of_q3_left_up = (
-                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_left_up = (
-                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_left_up = sqrt(
-                across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
-            )
-            if swing_q6_of_q3_left_up > size_q6_of_q3_times_rounding:
-                level_q6_of_q3_left_up = (
-                    value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                    - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_left_up = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up
-                    )
-                )
-                lowest_q6_of_q3_left_up = (
-                    1.0
-                    if (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up < -1.0
-                        else (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up
-                    )
-                )
-            else:
-                highest_q6_of_q3_left_up = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_left_up = -1.0
-            near_q6_of_q3_left_up = arctan2(
-                root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)) + 0.0,
-                highest_q6_of_q3_left_up + 0.0,
-            )
-            far_q6_of_q3_left_up = arctan2(
-                root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)) + 0.0,
-                lowest_q6_of_q3_left_up + 0.0,
-            )
-            centre_q6_of_q3_left_up = arctan2(across_q6_of_q3_left_up + 0.0, along_q6_of_q3_left_up + 0.0)
-            angle_q6_of_q3_left_up = arctan2(sin_q6_before_q6_of_q3_left_up + 0.0, cos_q6_before_q6_of_q3_left_up + 0.0)
-            side_q6_of_q3_left_up = (
-                1.0
-                if along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_left_up = nearest_on_arc(
-                angle_q6_of_q3_left_up,
-                (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
-                0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
-            )
-            cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
-            sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
-            # what the motion changes of the pose
-            cost_q6_of_q3_left_up = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
-                    )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
-                    + (
-                        sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
-                    )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
-                )
-                *radius_q6_left
-            )
-            if cost_q6_of_q3_left_up > 1e-12 and radius_q6_left > 1e-11:
-                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            else:
-                cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
-                sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
-        r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
-        r21_from_q1_before_q56_left_up = r33*radius_q6_left - r21_from_q1_before_q6_left_up*r23_from_q1_left
-        # what the unknown links must span
-        wrist_x_from_q1_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_up
-        r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
-        wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
-        reach_left_up = sqrt(
-            wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
-        )
-        cos_q3_left_up = (reach_left_up*reach_left_up - a2_squared_plus_a3_squared)/scale_q3
-        # kept as a product
-        sine_square_q3_left_up = (
-            (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up)*(a2_plus_a3 + reach_left_up)
-            *(a2_plus_a3 - reach_left_up)/scale_q3_squared
-        )
-        sin_q3_left_up_up = (sqrt(sine_square_q3_left_up) if sine_square_q3_left_up > 0.0 else 0.0)
-        if reach_left_up > machine_scale_times_free_angle:
-            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_up = (
-                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
-            )
-            across_q2_left_up_up = (
-                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
-            )
-            length_q2_squared_left_up_up = (
-                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
-            )
-            length_q2_left_up_up = sqrt(length_q2_squared_left_up_up) if length_q2_squared_left_up_up > 0.0 else 1.0
-            cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
-            sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_up = (
-                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
-            )
-            across_q2_left_down_up = (
-                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
-            )
-            length_q2_squared_left_down_up = (
-                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
-            )
-            length_q2_left_down_up = sqrt(length_q2_squared_left_down_up) if length_q2_squared_left_down_up > 0.0 else 1.0
-            cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
-            sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_left_up_up = cos(free_a2)  # its reference where it is free
-            sin_q2_left_up_up = sin(free_a2)
-            cos_q2_left_down_up = cos_q2_left_up_up  # its reference where it is free
-            sin_q2_left_down_up = sin_q2_left_up_up
+            angle_q2_up_down = free_a2
+            angle_q2_down_down = free_a2
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        # A2: its turn
-        axis_a2_left_up_down = offset_a2 + arctan2(sin_q2_left_up_down, cos_q2_left_up_down + 0.0)/DEGREE
+        axis_a2_left_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_up_down - open_a2 < 179.999999999:
             axis_a2_left_up_down = nearest_period(axis_a2_left_up_down, open_a2)
+        angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        axis_a3_left_up_down = offset_a3 + arctan2(sin_q3_left_up_down, cos_q3_left_down + 0.0)/DEGREE  # A3: its turn
+        axis_a3_left_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_left_up_down - open_a3 < 179.999999999:
             axis_a3_left_up_down = nearest_period(axis_a3_left_up_down, open_a3)
-        cos_q23_left_up_down = cos_q2_left_up_down*cos_q3_left_down - sin_q2_left_up_down*sin_q3_left_up_down
-        sin_q23_left_up_down = cos_q2_left_up_down*sin_q3_left_up_down + cos_q3_left_down*sin_q2_left_up_down
-        # q4: what the sum q234 leaves
-        cos_q4_left_up_down = (
-            r22_from_q1_before_q6_left_down*cos_q23_left_up_down
-            + r21_from_q1_before_q56_left_down*sin_q23_left_up_down
-        )
-        sin_q4_left_up_down = (
-            r21_from_q1_before_q56_left_down*cos_q23_left_up_down
-            - r22_from_q1_before_q6_left_down*sin_q23_left_up_down
-        )
+        angle_with_q4_down = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        # A4: its turn
-        axis_a4_left_up_down = offset_a4 + arctan2(sin_q4_left_up_down, cos_q4_left_up_down + 0.0)/DEGREE
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)/DEGREE
         if not -180.000000001 <= axis_a4_left_up_down - open_a4 < 179.999999999:
             axis_a4_left_up_down = nearest_period(axis_a4_left_up_down, open_a4)
         open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
-        axis_a5_left_down = offset_a5 + arctan2(radius_q6_left, -r23_from_q1_left + 0.0)/DEGREE  # A5: its turn
+        axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_left_down - open_a5 < 179.999999999:
             axis_a5_left_down = nearest_period(axis_a5_left_down, open_a5)
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
-        axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down + 0.0)/DEGREE  # A6: its turn
+        axis_a6_left_down = offset_a6 + arctan2(sin_q6_down, cos_q6_down + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_left_down - open_a6 < 179.999999999:
             axis_a6_left_down = nearest_period(axis_a6_left_down, open_a6)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        # A2: its turn
-        axis_a2_left_down_down = offset_a2 + arctan2(sin_q2_left_down_down, cos_q2_left_down_down + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a2_left_down_down - open_a2 < 179.999999999:
-            axis_a2_left_down_down = nearest_period(axis_a2_left_down_down, open_a2)
-        axis_a3_left_down_down = offset_a3_times_2 - axis_a3_left_up_down  # A3: its turn
-        if not -180.000000001 <= axis_a3_left_down_down - open_a3 < 179.999999999:
-            axis_a3_left_down_down = nearest_period(axis_a3_left_down_down, open_a3)
-        cos_q23_left_down_down = cos_q2_left_down_down*cos_q3_left_down + sin_q2_left_down_down*sin_q3_left_up_down
-        sin_q23_left_down_down = cos_q3_left_down*sin_q2_left_down_down - cos_q2_left_down_down*sin_q3_left_up_down
-        # q4: what the sum q234 leaves
-        cos_q4_left_down_down = (
-            r22_from_q1_before_q6_left_down*cos_q23_left_down_down
-            + r21_from_q1_before_q56_left_down*sin_q23_left_down_down
+        r21_from_q1_before_q6 = r31*cos_q6_up - r32*sin_q6_up
+        r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
+        # what the unknown links must span
+        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
+        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        # kept as a product
+        sine_square_q3_up = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
-        sin_q4_left_down_down = (
-            r21_from_q1_before_q56_left_down*cos_q23_left_down_down
-            - r22_from_q1_before_q6_left_down*sin_q23_left_down_down
-        )
-        # A4: its turn
-        axis_a4_left_down_down = offset_a4 + arctan2(sin_q4_left_down_down, cos_q4_left_down_down + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a4_left_down_down - open_a4 < 179.999999999:
-            axis_a4_left_down_down = nearest_period(axis_a4_left_down_down, open_a4)
-        axis_a2_left_up_up = offset_a2 + arctan2(sin_q2_left_up_up, cos_q2_left_up_up + 0.0)/DEGREE  # A2: its turn
+        sin_q3 = (sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
+            angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_up_up = free_a2
+            angle_q2_down_up = free_a2
+        axis_a2_left_up_up = offset_a2 + angle_q2_up_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_up_up - open_a2 < 179.999999999:
             axis_a2_left_up_up = nearest_period(axis_a2_left_up_up, open_a2)
-        axis_a3_left_up_up = offset_a3 + arctan2(sin_q3_left_up_up, cos_q3_left_up + 0.0)/DEGREE  # A3: its turn
+        angle_q3_up = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
+        axis_a3_left_up_up = offset_a3 + angle_q3_up/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_left_up_up - open_a3 < 179.999999999:
             axis_a3_left_up_up = nearest_period(axis_a3_left_up_up, open_a3)
-        cos_q23_left_up_up = cos_q2_left_up_up*cos_q3_left_up - sin_q2_left_up_up*sin_q3_left_up_up
-        sin_q23_left_up_up = cos_q2_left_up_up*sin_q3_left_up_up + cos_q3_left_up*sin_q2_left_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_left_up_up = (
-            r22_from_q1_before_q6_left_up*cos_q23_left_up_up + r21_from_q1_before_q56_left_up*sin_q23_left_up_up
-        )
-        sin_q4_left_up_up = (
-            r21_from_q1_before_q56_left_up*cos_q23_left_up_up - r22_from_q1_before_q6_left_up*sin_q23_left_up_up
-        )
-        axis_a4_left_up_up = offset_a4 + arctan2(sin_q4_left_up_up, cos_q4_left_up_up + 0.0)/DEGREE  # A4: its turn
+        angle_with_q4_up = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)/DEGREE
         if not -180.000000001 <= axis_a4_left_up_up - open_a4 < 179.999999999:
             axis_a4_left_up_up = nearest_period(axis_a4_left_up_up, open_a4)
         axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: its turn
         if not -180.000000001 <= axis_a5_left_up - open_a5 < 179.999999999:
             axis_a5_left_up = nearest_period(axis_a5_left_up, open_a5)
-        axis_a6_left_up = offset_a6 + arctan2(sin_q6_left_up, cos_q6_left_up + 0.0)/DEGREE  # A6: its turn
+        axis_a6_left_up = offset_a6 + arctan2(sin_q6_up, cos_q6_up + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_left_up - open_a6 < 179.999999999:
             axis_a6_left_up = nearest_period(axis_a6_left_up, open_a6)
-        # A2: its turn
-        axis_a2_left_down_up = offset_a2 + arctan2(sin_q2_left_down_up, cos_q2_left_down_up + 0.0)/DEGREE
+        axis_a2_left_down_down = offset_a2 + angle_q2_down_down/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_left_down_down - open_a2 < 179.999999999:
+            axis_a2_left_down_down = nearest_period(axis_a2_left_down_down, open_a2)
+        axis_a3_left_down_down = offset_a3 - angle_q3_down/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3_left_down_down - open_a3 < 179.999999999:
+            axis_a3_left_down_down = nearest_period(axis_a3_left_down_down, open_a3)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_down_down)/DEGREE
+        if not -180.000000001 <= axis_a4_left_down_down - open_a4 < 179.999999999:
+            axis_a4_left_down_down = nearest_period(axis_a4_left_down_down, open_a4)
+        axis_a2_left_down_up = offset_a2 + angle_q2_down_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_down_up - open_a2 < 179.999999999:
             axis_a2_left_down_up = nearest_period(axis_a2_left_down_up, open_a2)
-        axis_a3_left_down_up = offset_a3_times_2 - axis_a3_left_up_up  # A3: its turn
+        axis_a3_left_down_up = offset_a3 - angle_q3_up/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_left_down_up - open_a3 < 179.999999999:
             axis_a3_left_down_up = nearest_period(axis_a3_left_down_up, open_a3)
-        cos_q23_left_down_up = cos_q2_left_down_up*cos_q3_left_up + sin_q2_left_down_up*sin_q3_left_up_up
-        sin_q23_left_down_up = cos_q3_left_up*sin_q2_left_down_up - cos_q2_left_down_up*sin_q3_left_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_left_down_up = (
-            r22_from_q1_before_q6_left_up*cos_q23_left_down_up + r21_from_q1_before_q56_left_up*sin_q23_left_down_up
-        )
-        sin_q4_left_down_up = (
-            r21_from_q1_before_q56_left_up*cos_q23_left_down_up - r22_from_q1_before_q6_left_up*sin_q23_left_down_up
-        )
-        # A4: its turn
-        axis_a4_left_down_up = offset_a4 + arctan2(sin_q4_left_down_up, cos_q4_left_down_up + 0.0)/DEGREE
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_down_up)/DEGREE
         if not -180.000000001 <= axis_a4_left_down_up - open_a4 < 179.999999999:
             axis_a4_left_down_up = nearest_period(axis_a4_left_down_up, open_a4)
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1:
-            if sine_square_q3_left_down >= -1e-12 and axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6:
+            if sine_square_q3_down >= -1e-12 and axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6:
                 # limits of A2, limits of A3, limits of A4
                 refusal_left_up_down = (
                     0.0
@@ -558,7 +466,7 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 refusal_left_up_down = 3.0  # limits of A2, limits of A3, limits of A4
                 refusal_left_down_down = 3.0  # limits of A2, limits of A3, limits of A4
-            if sine_square_q3_left_up >= -1e-12 and axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6:
+            if sine_square_q3_up >= -1e-12 and axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6:
                 # limits of A2, limits of A3, limits of A4
                 refusal_left_up_up = (
                     0.0
@@ -580,456 +488,334 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_left_down_up = 3.0  # limits of A2, limits of A3, limits of A4
         else:
             refusal_left_up_down = 3.0  # limits of A2, limits of A3, limits of A4
-            refusal_left_down_down = 3.0  # limits of A2, limits of A3, limits of A4
             refusal_left_up_up = 3.0  # limits of A2, limits of A3, limits of A4
+            refusal_left_down_down = 3.0  # limits of A2, limits of A3, limits of A4
             refusal_left_down_up = 3.0  # limits of A2, limits of A3, limits of A4
-        r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
-        r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
-        # q6: direction and distance of a point
-        radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
-        if radius_q6_right > 1e-11:
-            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
-            cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down
+        cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_right + wrist_y*sin_q1_right
+        r21_from_q1 = r21*cos_q1_right - r11*sin_q1_right
+        r22_from_q1 = r22*cos_q1_right - r12*sin_q1_right
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        r33_times_radius_q6 = r33*radius_q6
+        cos_q5 = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
+        if radius_q6 > 1e-11:
+            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6  # its reference where it is free
+            sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_right_down = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_right_up = cos_q6_before_q6_of_q3_right_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = sin_q6_before_q6_of_q3_right_down
-        r23_from_q1_right = r23*cos_q1_right - r13*sin_q1_right
-        wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
-        wrist_x_from_q1_along_right = d5*r23_from_q1_right*r31
-        wrist_x_from_q1_across_right = -d5*r23_from_q1_right*r32
-        wrist_x_from_q1_here_right_down = (
-            wrist_x_from_q1_fixed_right_down + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_down
-            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_down
-        )
-        wrist_y_from_q1_here_right_down = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_down
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_down
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_right_down = (
-            wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
-            + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2_squared_plus_a3_squared
-        )
-        if abs(value_q6_of_q3_right_down) <= size_q6_of_q3:
-            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            cos_q6_before_q6_of_q3_down = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+        if radius_q6 > 0.01:
+            cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+            sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+            cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+            sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
         else:
-            along_q6_of_q3_right_down = (
-                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
+            wrist_x_from_q1_fixed_down = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_x_from_q1_here_down = (
+                wrist_x_from_q1_fixed_down + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_down
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_down
             )
-            across_q6_of_q3_right_down = (
-                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            wrist_y_from_q1_here_down = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_down
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_down
             )
-            swing_q6_of_q3_right_down = sqrt(
-                across_q6_of_q3_right_down*across_q6_of_q3_right_down
-                + along_q6_of_q3_right_down*along_q6_of_q3_right_down
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_down = (
+                wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
+                - a2_squared_plus_a3_squared
             )
-            if swing_q6_of_q3_right_down > size_q6_of_q3_times_rounding:
-                level_q6_of_q3_right_down = (
-                    value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
-                    - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_right_down = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down
-                    )
-                )
-                lowest_q6_of_q3_right_down = (
-                    1.0
-                    if (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down < -1.0
-                        else (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down
-                    )
-                )
+            if abs(value_q6_of_q3_down) <= size_q6_of_q3:
+                cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
             else:
-                highest_q6_of_q3_right_down = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_right_down = -1.0
-            near_q6_of_q3_right_down = arctan2(
-                root((1.0 - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)) + 0.0,
-                highest_q6_of_q3_right_down + 0.0,
-            )
-            far_q6_of_q3_right_down = arctan2(
-                root((1.0 - lowest_q6_of_q3_right_down)*(1.0 + lowest_q6_of_q3_right_down)) + 0.0,
-                lowest_q6_of_q3_right_down + 0.0,
-            )
-            centre_q6_of_q3_right_down = arctan2(across_q6_of_q3_right_down + 0.0, along_q6_of_q3_right_down + 0.0)
-            angle_q6_of_q3_right_down = arctan2(
-                sin_q6_before_q6_of_q3_right_down + 0.0, cos_q6_before_q6_of_q3_right_down + 0.0,
-            )
-            side_q6_of_q3_right_down = (
-                1.0
-                if along_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down - across_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_right_down = nearest_on_arc(
-                angle_q6_of_q3_right_down,
-                (
-                    centre_q6_of_q3_right_down
-                    + 0.5*(far_q6_of_q3_right_down + near_q6_of_q3_right_down)*side_q6_of_q3_right_down
-                ),
-                0.5*far_q6_of_q3_right_down - 0.5*near_q6_of_q3_right_down,
-            )
-            cos_q6_after_q6_of_q3_right_down = cos(moved_q6_of_q3_right_down)
-            sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
-            # what the motion changes of the pose
-            cost_q6_of_q3_right_down = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
-                    )*(cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down)
-                    + (
-                        sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
-                    )*(sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down)
+                along_q6_of_q3_down = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_down
                 )
-                *radius_q6_right
+                across_q6_of_q3_down = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_down
+                )
+                swing_q6_of_q3_down = sqrt(
+                    across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
+                )
+                if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3_down = (
+                        value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
+                        - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
+                    )
+                    # the arc: cosines from its centre
+                    highest_q6_of_q3_down = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down
+                        )
+                    )
+                    lowest_q6_of_q3_down = (
+                        1.0
+                        if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down < -1.0
+                            else (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down
+                        )
+                    )
+                else:
+                    highest_q6_of_q3_down = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_down = -1.0
+                near_q6_of_q3_down = arctan2(
+                    root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)) + 0.0, highest_q6_of_q3_down + 0.0,
+                )
+                far_q6_of_q3_down = arctan2(
+                    root((1.0 - lowest_q6_of_q3_down)*(1.0 + lowest_q6_of_q3_down)) + 0.0, lowest_q6_of_q3_down + 0.0,
+                )
+                centre_q6_of_q3_down = arctan2(across_q6_of_q3_down + 0.0, along_q6_of_q3_down + 0.0)
+                angle_q6_of_q3_down = arctan2(sin_q6_before_q6_of_q3_down + 0.0, cos_q6_before_q6_of_q3_down + 0.0)
+                side_q6_of_q3_down = (
+                    1.0
+                    if along_q6_of_q3_down*sin_q6_before_q6_of_q3_down - across_q6_of_q3_down*cos_q6_before_q6_of_q3_down >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3_down = nearest_on_arc(
+                    angle_q6_of_q3_down,
+                    centre_q6_of_q3_down + 0.5*(far_q6_of_q3_down + near_q6_of_q3_down)*side_q6_of_q3_down,
+                    0.5*far_q6_of_q3_down - 0.5*near_q6_of_q3_down,
+                )
+                cos_q6_after_q6_of_q3_down = cos(moved_q6_of_q3_down)
+                sin_q6_after_q6_of_q3_down = sin(moved_q6_of_q3_down)
+                # what the motion changes of the pose
+                cost_q6_of_q3_down = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down
+                        )*(cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down)
+                        + (
+                            sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down
+                        )*(sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down)
+                    )
+                    *radius_q6
+                )
+                if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                    sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                else:
+                    cos_q6_down = cos_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+                    sin_q6_down = sin_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+            wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+            wrist_x_from_q1_here_up = (
+                wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_up
             )
-            if cost_q6_of_q3_right_down > 1e-12 and radius_q6_right > 1e-11:
-                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            wrist_y_from_q1_here_up = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_up
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_up
+            )
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_up = (
+                wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
+                - a2_squared_plus_a3_squared
+            )
+            if abs(value_q6_of_q3_up) <= size_q6_of_q3:
+                cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
             else:
-                cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
-                sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
-        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
-        r21_from_q1_before_q56_right_down = -r21_from_q1_before_q6_right_down*r23_from_q1_right - r33*radius_q6_right
+                along_q6_of_q3_up = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_up
+                )
+                across_q6_of_q3_up = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
+                )
+                swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
+                if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3_up = (
+                        value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
+                        - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
+                    )
+                    # the arc: cosines from its centre
+                    highest_q6_of_q3_up = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up
+                        )
+                    )
+                    lowest_q6_of_q3_up = (
+                        1.0
+                        if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up < -1.0
+                            else (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up
+                        )
+                    )
+                else:
+                    highest_q6_of_q3_up = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_up = -1.0
+                near_q6_of_q3_up = arctan2(
+                    root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)) + 0.0, highest_q6_of_q3_up + 0.0,
+                )
+                far_q6_of_q3_up = arctan2(
+                    root((1.0 - lowest_q6_of_q3_up)*(1.0 + lowest_q6_of_q3_up)) + 0.0, lowest_q6_of_q3_up + 0.0,
+                )
+                centre_q6_of_q3_up = arctan2(across_q6_of_q3_up + 0.0, along_q6_of_q3_up + 0.0)
+                angle_q6_of_q3_up = arctan2(sin_q6_before_q6_of_q3_up + 0.0, cos_q6_before_q6_of_q3_up + 0.0)
+                side_q6_of_q3_up = (
+                    1.0
+                    if along_q6_of_q3_up*sin_q6_before_q6_of_q3_up - across_q6_of_q3_up*cos_q6_before_q6_of_q3_up >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3_up = nearest_on_arc(
+                    angle_q6_of_q3_up, centre_q6_of_q3_up + 0.5*(far_q6_of_q3_up + near_q6_of_q3_up)*side_q6_of_q3_up,
+                    0.5*far_q6_of_q3_up - 0.5*near_q6_of_q3_up,
+                )
+                cos_q6_after_q6_of_q3_up = cos(moved_q6_of_q3_up)
+                sin_q6_after_q6_of_q3_up = sin(moved_q6_of_q3_up)
+                # what the motion changes of the pose
+                cost_q6_of_q3_up = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up
+                        )*(cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up)
+                        + (
+                            sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up
+                        )*(sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up)
+                    )
+                    *radius_q6
+                )
+                if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                    sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                else:
+                    cos_q6_up = cos_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+                    sin_q6_up = sin_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+        r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
+        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
         # what the unknown links must span
-        wrist_x_from_q1_right_down = (
-            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
-        )
-        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
-        # what the unknown links must span
-        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
-        reach_right_down = sqrt(
-            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
-            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
-        )
-        cos_q3_right_down = (reach_right_down*reach_right_down - a2_squared_plus_a3_squared)/scale_q3
+        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
+        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
-        sine_square_q3_right_down = (
-            (reach_right_down - a2_minus_a3)*(a2_minus_a3 + reach_right_down)*(a2_plus_a3 + reach_right_down)
-            *(a2_plus_a3 - reach_right_down)/scale_q3_squared
+        sine_square_q3_down = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
-        sin_q3_right_up_down = (sqrt(sine_square_q3_right_down) if sine_square_q3_right_down > 0.0 else 0.0)
-        if reach_right_down > machine_scale_times_free_angle:
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_down = (
-                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                + arm_along_q2_right_down*wrist_x_from_q1_right_down
-            )
-            across_q2_right_up_down = (
-                arm_along_q2_right_down*wrist_y_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            )
-            length_q2_squared_right_up_down = (
-                across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
-            )
-            length_q2_right_up_down = (
-                sqrt(length_q2_squared_right_up_down)
-                if length_q2_squared_right_up_down > 0.0
-                else 1.0
-            )
-            cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
-            sin_q2_right_up_down = across_q2_right_up_down/length_q2_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_down = (
-                arm_along_q2_right_down*wrist_x_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            )
-            across_q2_right_down_down = (
-                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                + arm_along_q2_right_down*wrist_y_from_q1_right_down
-            )
-            length_q2_squared_right_down_down = (
-                across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
-            )
-            length_q2_right_down_down = (
-                sqrt(length_q2_squared_right_down_down)
-                if length_q2_squared_right_down_down > 0.0
-                else 1.0
-            )
-            cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
-            sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
+        sin_q3 = (sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
+            angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_right_up_down = cos(free_a2)  # its reference where it is free
-            sin_q2_right_up_down = sin(free_a2)
-            cos_q2_right_down_down = cos_q2_right_up_down  # its reference where it is free
-            sin_q2_right_down_down = sin_q2_right_up_down
-        wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
-        wrist_x_from_q1_here_right_up = (
-            wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
-            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
-        )
-        wrist_y_from_q1_here_right_up = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_up
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_up
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_right_up = (
-            wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
-            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2_squared_plus_a3_squared
-        )
-        if abs(value_q6_of_q3_right_up) <= size_q6_of_q3:
-            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-        else:
-            along_q6_of_q3_right_up = (
-                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_right_up = (
-                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_right_up = sqrt(
-                across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
-            )
-            if swing_q6_of_q3_right_up > size_q6_of_q3_times_rounding:
-                level_q6_of_q3_right_up = (
-                    value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
-                    - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_right_up = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up
-                    )
-                )
-                lowest_q6_of_q3_right_up = (
-                    1.0
-                    if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up < -1.0
-                        else (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up
-                    )
-                )
-            else:
-                highest_q6_of_q3_right_up = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_right_up = -1.0
-            near_q6_of_q3_right_up = arctan2(
-                root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)) + 0.0,
-                highest_q6_of_q3_right_up + 0.0,
-            )
-            far_q6_of_q3_right_up = arctan2(
-                root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)) + 0.0,
-                lowest_q6_of_q3_right_up + 0.0,
-            )
-            centre_q6_of_q3_right_up = arctan2(across_q6_of_q3_right_up + 0.0, along_q6_of_q3_right_up + 0.0)
-            angle_q6_of_q3_right_up = arctan2(
-                sin_q6_before_q6_of_q3_right_up + 0.0, cos_q6_before_q6_of_q3_right_up + 0.0,
-            )
-            side_q6_of_q3_right_up = (
-                1.0
-                if along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_right_up = nearest_on_arc(
-                angle_q6_of_q3_right_up,
-                (centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)*side_q6_of_q3_right_up),
-                0.5*far_q6_of_q3_right_up - 0.5*near_q6_of_q3_right_up,
-            )
-            cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
-            sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
-            # what the motion changes of the pose
-            cost_q6_of_q3_right_up = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
-                    )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
-                    + (
-                        sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
-                    )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
-                )
-                *radius_q6_right
-            )
-            if cost_q6_of_q3_right_up > 1e-12 and radius_q6_right > 1e-11:
-                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            else:
-                cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
-                sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
-        r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
-        r21_from_q1_before_q56_right_up = r33*radius_q6_right - r21_from_q1_before_q6_right_up*r23_from_q1_right
-        # what the unknown links must span
-        wrist_x_from_q1_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_up
-        r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
-        # what the unknown links must span
-        wrist_y_from_q1_right_up = wrist_z + d5*r22_from_q1_before_q6_right_up - d1
-        reach_right_up = sqrt(
-            wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
-        )
-        cos_q3_right_up = (reach_right_up*reach_right_up - a2_squared_plus_a3_squared)/scale_q3
-        # kept as a product
-        sine_square_q3_right_up = (
-            (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up)*(a2_plus_a3 + reach_right_up)
-            *(a2_plus_a3 - reach_right_up)/scale_q3_squared
-        )
-        sin_q3_right_up_up = (sqrt(sine_square_q3_right_up) if sine_square_q3_right_up > 0.0 else 0.0)
-        if reach_right_up > machine_scale_times_free_angle:
-            arm_along_q2_right_up = a2 + a3*cos_q3_right_up
-            arm_across_q2_right_up_up = a3*sin_q3_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_up = (
-                arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
-            )
-            across_q2_right_up_up = (
-                arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
-            )
-            length_q2_squared_right_up_up = (
-                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
-            )
-            length_q2_right_up_up = sqrt(length_q2_squared_right_up_up) if length_q2_squared_right_up_up > 0.0 else 1.0
-            cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
-            sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_up = (
-                arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
-            )
-            across_q2_right_down_up = (
-                arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
-            )
-            length_q2_squared_right_down_up = (
-                across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
-            )
-            length_q2_right_down_up = (
-                sqrt(length_q2_squared_right_down_up)
-                if length_q2_squared_right_down_up > 0.0
-                else 1.0
-            )
-            cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
-            sin_q2_right_down_up = across_q2_right_down_up/length_q2_right_down_up
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_right_up_up = cos(free_a2)  # its reference where it is free
-            sin_q2_right_up_up = sin(free_a2)
-            cos_q2_right_down_up = cos_q2_right_up_up  # its reference where it is free
-            sin_q2_right_down_up = sin_q2_right_up_up
-        # A2: its turn
-        axis_a2_right_up_down = offset_a2 + arctan2(sin_q2_right_up_down, cos_q2_right_up_down + 0.0)/DEGREE
+            angle_q2_up_down = free_a2
+            angle_q2_down_down = free_a2
+        axis_a2_right_up_down = offset_a2 + angle_q2_up_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_up_down - open_a2 < 179.999999999:
             axis_a2_right_up_down = nearest_period(axis_a2_right_up_down, open_a2)
-        # A3: its turn
-        axis_a3_right_up_down = offset_a3 + arctan2(sin_q3_right_up_down, cos_q3_right_down + 0.0)/DEGREE
+        angle_q3_down = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
+        axis_a3_right_up_down = offset_a3 + angle_q3_down/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_right_up_down - open_a3 < 179.999999999:
             axis_a3_right_up_down = nearest_period(axis_a3_right_up_down, open_a3)
-        cos_q23_right_up_down = cos_q2_right_up_down*cos_q3_right_down - sin_q2_right_up_down*sin_q3_right_up_down
-        sin_q23_right_up_down = cos_q2_right_up_down*sin_q3_right_up_down + cos_q3_right_down*sin_q2_right_up_down
-        # q4: what the sum q234 leaves
-        cos_q4_right_up_down = (
-            r22_from_q1_before_q6_right_down*cos_q23_right_up_down
-            + r21_from_q1_before_q56_right_down*sin_q23_right_up_down
-        )
-        sin_q4_right_up_down = (
-            r21_from_q1_before_q56_right_down*cos_q23_right_up_down
-            - r22_from_q1_before_q6_right_down*sin_q23_right_up_down
-        )
-        # A4: its turn
-        axis_a4_right_up_down = offset_a4 + arctan2(sin_q4_right_up_down, cos_q4_right_up_down + 0.0)/DEGREE
+        angle_with_q4_down = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)/DEGREE
         if not -180.000000001 <= axis_a4_right_up_down - open_a4 < 179.999999999:
             axis_a4_right_up_down = nearest_period(axis_a4_right_up_down, open_a4)
-        axis_a5_right_down = offset_a5 + arctan2(radius_q6_right, -r23_from_q1_right + 0.0)/DEGREE  # A5: its turn
+        axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_right_down - open_a5 < 179.999999999:
             axis_a5_right_down = nearest_period(axis_a5_right_down, open_a5)
-        axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down + 0.0)/DEGREE  # A6: its turn
+        axis_a6_right_down = offset_a6 + arctan2(sin_q6_down, cos_q6_down + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_right_down - open_a6 < 179.999999999:
             axis_a6_right_down = nearest_period(axis_a6_right_down, open_a6)
         axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        # A2: its turn
-        axis_a2_right_down_down = offset_a2 + arctan2(sin_q2_right_down_down, cos_q2_right_down_down + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a2_right_down_down - open_a2 < 179.999999999:
-            axis_a2_right_down_down = nearest_period(axis_a2_right_down_down, open_a2)
-        axis_a3_right_down_down = offset_a3_times_2 - axis_a3_right_up_down  # A3: its turn
-        if not -180.000000001 <= axis_a3_right_down_down - open_a3 < 179.999999999:
-            axis_a3_right_down_down = nearest_period(axis_a3_right_down_down, open_a3)
-        cos_q23_right_down_down = (
-            cos_q2_right_down_down*cos_q3_right_down + sin_q2_right_down_down*sin_q3_right_up_down
+        r21_from_q1_before_q6 = r31*cos_q6_up - r32*sin_q6_up
+        r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
+        # what the unknown links must span
+        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
+        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        # kept as a product
+        sine_square_q3_up = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
-        sin_q23_right_down_down = (
-            cos_q3_right_down*sin_q2_right_down_down - cos_q2_right_down_down*sin_q3_right_up_down
-        )
-        # q4: what the sum q234 leaves
-        cos_q4_right_down_down = (
-            r22_from_q1_before_q6_right_down*cos_q23_right_down_down
-            + r21_from_q1_before_q56_right_down*sin_q23_right_down_down
-        )
-        sin_q4_right_down_down = (
-            r21_from_q1_before_q56_right_down*cos_q23_right_down_down
-            - r22_from_q1_before_q6_right_down*sin_q23_right_down_down
-        )
-        # A4: its turn
-        axis_a4_right_down_down = offset_a4 + arctan2(sin_q4_right_down_down, cos_q4_right_down_down + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a4_right_down_down - open_a4 < 179.999999999:
-            axis_a4_right_down_down = nearest_period(axis_a4_right_down_down, open_a4)
-        axis_a2_right_up_up = offset_a2 + arctan2(sin_q2_right_up_up, cos_q2_right_up_up + 0.0)/DEGREE  # A2: its turn
+        sin_q3 = (sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
+            angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_up_up = free_a2
+            angle_q2_down_up = free_a2
+        axis_a2_right_up_up = offset_a2 + angle_q2_up_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_up_up - open_a2 < 179.999999999:
             axis_a2_right_up_up = nearest_period(axis_a2_right_up_up, open_a2)
-        axis_a3_right_up_up = offset_a3 + arctan2(sin_q3_right_up_up, cos_q3_right_up + 0.0)/DEGREE  # A3: its turn
+        angle_q3_up = arctan2(sin_q3 + 0.0, cos_q3 + 0.0)
+        axis_a3_right_up_up = offset_a3 + angle_q3_up/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_right_up_up - open_a3 < 179.999999999:
             axis_a3_right_up_up = nearest_period(axis_a3_right_up_up, open_a3)
-        cos_q23_right_up_up = cos_q2_right_up_up*cos_q3_right_up - sin_q2_right_up_up*sin_q3_right_up_up
-        sin_q23_right_up_up = cos_q2_right_up_up*sin_q3_right_up_up + cos_q3_right_up*sin_q2_right_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_right_up_up = (
-            r22_from_q1_before_q6_right_up*cos_q23_right_up_up + r21_from_q1_before_q56_right_up*sin_q23_right_up_up
-        )
-        sin_q4_right_up_up = (
-            r21_from_q1_before_q56_right_up*cos_q23_right_up_up - r22_from_q1_before_q6_right_up*sin_q23_right_up_up
-        )
-        axis_a4_right_up_up = offset_a4 + arctan2(sin_q4_right_up_up, cos_q4_right_up_up + 0.0)/DEGREE  # A4: its turn
+        angle_with_q4_up = arctan2(r21_from_q1_before_q56 + 0.0, r22_from_q1_before_q6 + 0.0)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)/DEGREE
         if not -180.000000001 <= axis_a4_right_up_up - open_a4 < 179.999999999:
             axis_a4_right_up_up = nearest_period(axis_a4_right_up_up, open_a4)
         axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down  # A5: its turn
         if not -180.000000001 <= axis_a5_right_up - open_a5 < 179.999999999:
             axis_a5_right_up = nearest_period(axis_a5_right_up, open_a5)
-        axis_a6_right_up = offset_a6 + arctan2(sin_q6_right_up, cos_q6_right_up + 0.0)/DEGREE  # A6: its turn
+        axis_a6_right_up = offset_a6 + arctan2(sin_q6_up, cos_q6_up + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_right_up - open_a6 < 179.999999999:
             axis_a6_right_up = nearest_period(axis_a6_right_up, open_a6)
-        # A2: its turn
-        axis_a2_right_down_up = offset_a2 + arctan2(sin_q2_right_down_up, cos_q2_right_down_up + 0.0)/DEGREE
+        axis_a2_right_down_down = offset_a2 + angle_q2_down_down/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_right_down_down - open_a2 < 179.999999999:
+            axis_a2_right_down_down = nearest_period(axis_a2_right_down_down, open_a2)
+        axis_a3_right_down_down = offset_a3 - angle_q3_down/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3_right_down_down - open_a3 < 179.999999999:
+            axis_a3_right_down_down = nearest_period(axis_a3_right_down_down, open_a3)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_down_down)/DEGREE
+        if not -180.000000001 <= axis_a4_right_down_down - open_a4 < 179.999999999:
+            axis_a4_right_down_down = nearest_period(axis_a4_right_down_down, open_a4)
+        axis_a2_right_down_up = offset_a2 + angle_q2_down_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_down_up - open_a2 < 179.999999999:
             axis_a2_right_down_up = nearest_period(axis_a2_right_down_up, open_a2)
-        axis_a3_right_down_up = offset_a3_times_2 - axis_a3_right_up_up  # A3: its turn
+        axis_a3_right_down_up = offset_a3 - angle_q3_up/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_right_down_up - open_a3 < 179.999999999:
             axis_a3_right_down_up = nearest_period(axis_a3_right_down_up, open_a3)
-        cos_q23_right_down_up = cos_q2_right_down_up*cos_q3_right_up + sin_q2_right_down_up*sin_q3_right_up_up
-        sin_q23_right_down_up = cos_q3_right_up*sin_q2_right_down_up - cos_q2_right_down_up*sin_q3_right_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_right_down_up = (
-            r22_from_q1_before_q6_right_up*cos_q23_right_down_up
-            + r21_from_q1_before_q56_right_up*sin_q23_right_down_up
-        )
-        sin_q4_right_down_up = (
-            r21_from_q1_before_q56_right_up*cos_q23_right_down_up
-            - r22_from_q1_before_q6_right_up*sin_q23_right_down_up
-        )
-        # A4: its turn
-        axis_a4_right_down_up = offset_a4 + arctan2(sin_q4_right_down_up, cos_q4_right_down_up + 0.0)/DEGREE
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_down_up)/DEGREE
         if not -180.000000001 <= axis_a4_right_down_up - open_a4 < 179.999999999:
             axis_a4_right_down_up = nearest_period(axis_a4_right_down_up, open_a4)
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
-            if sine_square_q3_right_down >= -1e-12 and axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6:
+            if sine_square_q3_down >= -1e-12 and axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6:
                 # limits of A2, limits of A3, limits of A4
                 refusal_right_up_down = (
                     0.0
@@ -1049,7 +835,7 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 refusal_right_up_down = 3.0  # limits of A2, limits of A3, limits of A4
                 refusal_right_down_down = 3.0  # limits of A2, limits of A3, limits of A4
-            if sine_square_q3_right_up >= -1e-12 and axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6:
+            if sine_square_q3_up >= -1e-12 and axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6:
                 # limits of A2, limits of A3, limits of A4
                 refusal_right_up_up = (
                     0.0
@@ -1071,8 +857,8 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_right_down_up = 3.0  # limits of A2, limits of A3, limits of A4
         else:
             refusal_right_up_down = 3.0  # limits of A2, limits of A3, limits of A4
-            refusal_right_down_down = 3.0  # limits of A2, limits of A3, limits of A4
             refusal_right_up_up = 3.0  # limits of A2, limits of A3, limits of A4
+            refusal_right_down_down = 3.0  # limits of A2, limits of A3, limits of A4
             refusal_right_down_up = 3.0  # limits of A2, limits of A3, limits of A4
         return (
             (
@@ -1155,807 +941,608 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_q1 >= -1e-12):
             return 8*(None,)
         if distance_q1 > machine_scale_times_free_angle:
+            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
+            sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
             cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1_left = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
-            cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_left = (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1
-            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
+            cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
+            # its reference where it is free
+            cos_q1_left = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
+            sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
+            cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
+            sin_q1_left = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
+            # its reference where it is free
+            cos_q1_right = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
+            sin_q1_right = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_left = cos(free_a1)  # its reference where it is free
             sin_q1_left = sin(free_a1)
             cos_q1_right = cos_q1_left  # its reference where it is free
             sin_q1_right = sin_q1_left
-        r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
-        r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
-        # q6: direction and distance of a point
-        radius_q6_left = sqrt(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
-        if radius_q6_left > 1e-11:
-            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
-            cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down
+        cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_left + wrist_y*sin_q1_left
+        r21_from_q1 = r21*cos_q1_left - r11*sin_q1_left
+        r22_from_q1 = r22*cos_q1_left - r12*sin_q1_left
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        r33_times_radius_q6 = r33*radius_q6
+        cos_q5 = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
+        if radius_q6 > 1e-11:
+            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6  # its reference where it is free
+            sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_left_down = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_left_up = cos_q6_before_q6_of_q3_left_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = sin_q6_before_q6_of_q3_left_down
-        r23_from_q1_left = r23*cos_q1_left - r13*sin_q1_left
-        wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
-        wrist_x_from_q1_along_left = d5*r23_from_q1_left*r31
+            cos_q6_before_q6_of_q3_down = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         wrist_z = z - d6*r33
-        wrist_y_from_q1_fixed = wrist_z - d1
-        wrist_y_from_q1_along = d5*r32
-        wrist_x_from_q1_across_left = -d5*r23_from_q1_left*r32
-        wrist_y_from_q1_across = d5*r31
-        wrist_x_from_q1_here_left_down = (
-            wrist_x_from_q1_fixed_left_down + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_down
-            + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_down
-        )
-        wrist_y_from_q1_here_left_down = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_down
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_down
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_left_down = (
-            wrist_x_from_q1_here_left_down*wrist_x_from_q1_here_left_down
-            + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2_squared_plus_a3_squared
-        )
-        if abs(value_q6_of_q3_left_down) <= size_q6_of_q3:
-            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+        if radius_q6 > 0.01:
+            cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+            sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+            cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+            sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
         else:
-            along_q6_of_q3_left_down = (
-                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_down
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
+            wrist_x_from_q1_fixed_down = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_x_from_q1_here_down = (
+                wrist_x_from_q1_fixed_down + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_down
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_down
             )
-            across_q6_of_q3_left_down = (
-                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_down
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            wrist_y_from_q1_here_down = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_down
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_down
             )
-            swing_q6_of_q3_left_down = sqrt(
-                across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_down = (
+                wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
+                - a2_squared_plus_a3_squared
             )
-            if swing_q6_of_q3_left_down > size_q6_of_q3_times_rounding:
-                level_q6_of_q3_left_down = (
-                    value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
-                    - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_left_down = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down
-                    )
-                )
-                lowest_q6_of_q3_left_down = (
-                    1.0
-                    if (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down < -1.0
-                        else (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down
-                    )
-                )
+            if abs(value_q6_of_q3_down) <= size_q6_of_q3:
+                cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
             else:
-                highest_q6_of_q3_left_down = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_left_down = -1.0
-            near_q6_of_q3_left_down = arctan2(
-                root((1.0 - highest_q6_of_q3_left_down)*(1.0 + highest_q6_of_q3_left_down)),
-                highest_q6_of_q3_left_down,
-            )
-            far_q6_of_q3_left_down = arctan2(
-                root((1.0 - lowest_q6_of_q3_left_down)*(1.0 + lowest_q6_of_q3_left_down)),
-                lowest_q6_of_q3_left_down,
-            )
-            centre_q6_of_q3_left_down = arctan2(across_q6_of_q3_left_down, along_q6_of_q3_left_down)
-            angle_q6_of_q3_left_down = arctan2(sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_down)
-            side_q6_of_q3_left_down = (
-                1.0
-                if along_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down - across_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_left_down = nearest_on_arc(
-                angle_q6_of_q3_left_down,
-                (
-                    centre_q6_of_q3_left_down
-                    + 0.5*(far_q6_of_q3_left_down + near_q6_of_q3_left_down)*side_q6_of_q3_left_down
-                ),
-                0.5*far_q6_of_q3_left_down - 0.5*near_q6_of_q3_left_down,
-            )
-            cos_q6_after_q6_of_q3_left_down = cos(moved_q6_of_q3_left_down)
-            sin_q6_after_q6_of_q3_left_down = sin(moved_q6_of_q3_left_down)
-            # what the motion changes of the pose
-            cost_q6_of_q3_left_down = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down
-                    )*(cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down)
-                    + (
-                        sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down
-                    )*(sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down)
+                along_q6_of_q3_down = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_down
                 )
-                *radius_q6_left
+                across_q6_of_q3_down = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_down
+                )
+                swing_q6_of_q3_down = sqrt(
+                    across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
+                )
+                if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3_down = (
+                        value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
+                        - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
+                    )
+                    # the arc: cosines from its centre
+                    highest_q6_of_q3_down = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down
+                        )
+                    )
+                    lowest_q6_of_q3_down = (
+                        1.0
+                        if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down < -1.0
+                            else (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down
+                        )
+                    )
+                else:
+                    highest_q6_of_q3_down = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_down = -1.0
+                near_q6_of_q3_down = arctan2(
+                    root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)),
+                    highest_q6_of_q3_down,
+                )
+                far_q6_of_q3_down = arctan2(
+                    root((1.0 - lowest_q6_of_q3_down)*(1.0 + lowest_q6_of_q3_down)),
+                    lowest_q6_of_q3_down,
+                )
+                centre_q6_of_q3_down = arctan2(across_q6_of_q3_down, along_q6_of_q3_down)
+                angle_q6_of_q3_down = arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down)
+                side_q6_of_q3_down = (
+                    1.0
+                    if along_q6_of_q3_down*sin_q6_before_q6_of_q3_down - across_q6_of_q3_down*cos_q6_before_q6_of_q3_down >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3_down = nearest_on_arc(
+                    angle_q6_of_q3_down,
+                    centre_q6_of_q3_down + 0.5*(far_q6_of_q3_down + near_q6_of_q3_down)*side_q6_of_q3_down,
+                    0.5*far_q6_of_q3_down - 0.5*near_q6_of_q3_down,
+                )
+                cos_q6_after_q6_of_q3_down = cos(moved_q6_of_q3_down)
+                sin_q6_after_q6_of_q3_down = sin(moved_q6_of_q3_down)
+                # what the motion changes of the pose
+                cost_q6_of_q3_down = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down
+                        )*(cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down)
+                        + (
+                            sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down
+                        )*(sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down)
+                    )
+                    *radius_q6
+                )
+                if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                    sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                else:
+                    cos_q6_down = cos_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+                    sin_q6_down = sin_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+            wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+            wrist_x_from_q1_here_up = (
+                wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_up
             )
-            if cost_q6_of_q3_left_down > 1e-12 and radius_q6_left > 1e-11:
-                cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-                sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+            wrist_y_from_q1_here_up = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_up
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_up
+            )
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_up = (
+                wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
+                - a2_squared_plus_a3_squared
+            )
+            if abs(value_q6_of_q3_up) <= size_q6_of_q3:
+                cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
             else:
-                cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
-                sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
-        r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
-        r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
+                along_q6_of_q3_up = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_up
+                )
+                across_q6_of_q3_up = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
+                )
+                swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
+                if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3_up = (
+                        value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
+                        - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
+                    )
+                    # the arc: cosines from its centre
+                    highest_q6_of_q3_up = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up
+                        )
+                    )
+                    lowest_q6_of_q3_up = (
+                        1.0
+                        if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up < -1.0
+                            else (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up
+                        )
+                    )
+                else:
+                    highest_q6_of_q3_up = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_up = -1.0
+                near_q6_of_q3_up = arctan2(root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)), highest_q6_of_q3_up)
+                far_q6_of_q3_up = arctan2(root((1.0 - lowest_q6_of_q3_up)*(1.0 + lowest_q6_of_q3_up)), lowest_q6_of_q3_up)
+                centre_q6_of_q3_up = arctan2(across_q6_of_q3_up, along_q6_of_q3_up)
+                angle_q6_of_q3_up = arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up)
+                side_q6_of_q3_up = (
+                    1.0
+                    if along_q6_of_q3_up*sin_q6_before_q6_of_q3_up - across_q6_of_q3_up*cos_q6_before_q6_of_q3_up >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3_up = nearest_on_arc(
+                    angle_q6_of_q3_up, centre_q6_of_q3_up + 0.5*(far_q6_of_q3_up + near_q6_of_q3_up)*side_q6_of_q3_up,
+                    0.5*far_q6_of_q3_up - 0.5*near_q6_of_q3_up,
+                )
+                cos_q6_after_q6_of_q3_up = cos(moved_q6_of_q3_up)
+                sin_q6_after_q6_of_q3_up = sin(moved_q6_of_q3_up)
+                # what the motion changes of the pose
+                cost_q6_of_q3_up = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up
+                        )*(cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up)
+                        + (
+                            sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up
+                        )*(sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up)
+                    )
+                    *radius_q6
+                )
+                if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                    sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                else:
+                    cos_q6_up = cos_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+                    sin_q6_up = sin_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+        r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
+        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
         # what the unknown links must span
-        wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
-        r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
-        # what the unknown links must span
-        wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
-        reach_left_down = sqrt(
-            wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
-        )
+        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        d1_minus_wrist_z = d1 - wrist_z
+        r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
+        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3_left_down = (
-            (reach_left_down - a2_minus_a3)*(a2_minus_a3 + reach_left_down)*(a2_plus_a3 + reach_left_down)
-            *(a2_plus_a3 - reach_left_down)/scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
-        cos_q3_left_down = (reach_left_down*reach_left_down - a2_squared_plus_a3_squared)/scale_q3
-        sin_q3_left_up_down = (sqrt(sine_square_q3_left_down) if sine_square_q3_left_down > 0.0 else 0.0)
-        if reach_left_down > machine_scale_times_free_angle:
-            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_down = (
-                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
-            )
-            across_q2_left_up_down = (
-                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
-            )
-            length_q2_squared_left_up_down = (
-                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
-            )
-            length_q2_left_up_down = sqrt(length_q2_squared_left_up_down) if length_q2_squared_left_up_down > 0.0 else 1.0
-            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
-            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_down = (
-                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
-            )
-            across_q2_left_down_down = (
-                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
-            )
-            length_q2_squared_left_down_down = (
-                across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
-            )
-            length_q2_left_down_down = (
-                sqrt(length_q2_squared_left_down_down)
-                if length_q2_squared_left_down_down > 0.0
-                else 1.0
-            )
-            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
-            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
+        refusal_left_down = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left)*RADIAN  # A1: its turn
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
+            angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_left_up_down = cos(free_a2)  # its reference where it is free
-            sin_q2_left_up_down = sin(free_a2)
-            cos_q2_left_down_down = cos_q2_left_up_down  # its reference where it is free
-            sin_q2_left_down_down = sin_q2_left_up_down
-        r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
-        r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
-        # q6: direction and distance of a point
-        radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
-        if radius_q6_right > 1e-11:
-            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
-            cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down
+            angle_q2_up_down = free_a2
+            angle_q2_down_down = free_a2
+        axis_a2_left_up_down = offset_a2 + angle_q2_up_down*RADIAN  # A2: its turn
+        angle_q3_down = arctan2(sin_q3, cos_q3)
+        part_of_axis_a3_left_up_down = angle_q3_down*RADIAN
+        axis_a3_left_up_down = offset_a3 + part_of_axis_a3_left_up_down  # A3: its turn
+        angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)*RADIAN
+        axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN  # A5: its turn
+        axis_a6_left_down = offset_a6 + arctan2(sin_q6_down, cos_q6_down)*RADIAN  # A6: its turn
+        r21_from_q1_before_q6 = r31*cos_q6_up - r32*sin_q6_up
+        r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
+        # what the unknown links must span
+        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
+        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        # kept as a product
+        sine_square_q3 = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+        )
+        refusal_left_up = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
+            angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_up_up = free_a2
+            angle_q2_down_up = free_a2
+        axis_a2_left_up_up = offset_a2 + angle_q2_up_up*RADIAN  # A2: its turn
+        angle_q3_up = arctan2(sin_q3, cos_q3)
+        part_of_axis_a3 = angle_q3_up*RADIAN
+        axis_a3_left_up_up = offset_a3 + part_of_axis_a3  # A3: its turn
+        angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)*RADIAN
+        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: its turn
+        axis_a6_left_up = offset_a6 + arctan2(sin_q6_up, cos_q6_up)*RADIAN  # A6: its turn
+        axis_a2_left_down_down = offset_a2 + angle_q2_down_down*RADIAN  # A2: its turn
+        axis_a3_left_down_down = offset_a3 - part_of_axis_a3_left_up_down  # A3: its turn
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_down_down)*RADIAN
+        axis_a2_left_down_up = offset_a2 + angle_q2_down_up*RADIAN  # A2: its turn
+        axis_a3_left_down_up = offset_a3 - part_of_axis_a3  # A3: its turn
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_down_up)*RADIAN
+        cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_right + wrist_y*sin_q1_right
+        r21_from_q1 = r21*cos_q1_right - r11*sin_q1_right
+        r22_from_q1 = r22*cos_q1_right - r12*sin_q1_right
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        r33_times_radius_q6 = r33*radius_q6
+        cos_q5 = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
+        if radius_q6 > 1e-11:
+            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6  # its reference where it is free
+            sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_right_down = cos(free_a6)  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_right_up = cos_q6_before_q6_of_q3_right_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = sin_q6_before_q6_of_q3_right_down
-        r23_from_q1_right = r23*cos_q1_right - r13*sin_q1_right
-        wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
-        wrist_x_from_q1_along_right = d5*r23_from_q1_right*r31
-        wrist_x_from_q1_across_right = -d5*r23_from_q1_right*r32
-        wrist_x_from_q1_here_right_down = (
-            wrist_x_from_q1_fixed_right_down + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_down
-            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_down
-        )
-        wrist_y_from_q1_here_right_down = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_down
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_down
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_right_down = (
-            wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
-            + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2_squared_plus_a3_squared
-        )
-        if abs(value_q6_of_q3_right_down) <= size_q6_of_q3:
-            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            cos_q6_before_q6_of_q3_down = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+        if radius_q6 > 0.01:
+            cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+            sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+            cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+            sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
         else:
-            along_q6_of_q3_right_down = (
-                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
+            wrist_x_from_q1_fixed_down = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_x_from_q1_here_down = (
+                wrist_x_from_q1_fixed_down + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_down
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_down
             )
-            across_q6_of_q3_right_down = (
-                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            wrist_y_from_q1_here_down = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_down
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_down
             )
-            swing_q6_of_q3_right_down = sqrt(
-                across_q6_of_q3_right_down*across_q6_of_q3_right_down
-                + along_q6_of_q3_right_down*along_q6_of_q3_right_down
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_down = (
+                wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
+                - a2_squared_plus_a3_squared
             )
-            if swing_q6_of_q3_right_down > size_q6_of_q3_times_rounding:
-                level_q6_of_q3_right_down = (
-                    value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
-                    - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_right_down = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down
-                    )
-                )
-                lowest_q6_of_q3_right_down = (
-                    1.0
-                    if (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down < -1.0
-                        else (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down
-                    )
-                )
+            if abs(value_q6_of_q3_down) <= size_q6_of_q3:
+                cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
             else:
-                highest_q6_of_q3_right_down = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_right_down = -1.0
-            near_q6_of_q3_right_down = arctan2(
-                root((1.0 - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)),
-                highest_q6_of_q3_right_down,
-            )
-            far_q6_of_q3_right_down = arctan2(
-                root((1.0 - lowest_q6_of_q3_right_down)*(1.0 + lowest_q6_of_q3_right_down)),
-                lowest_q6_of_q3_right_down,
-            )
-            centre_q6_of_q3_right_down = arctan2(across_q6_of_q3_right_down, along_q6_of_q3_right_down)
-            angle_q6_of_q3_right_down = arctan2(sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_down)
-            side_q6_of_q3_right_down = (
-                1.0
-                if along_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down - across_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_right_down = nearest_on_arc(
-                angle_q6_of_q3_right_down,
-                (
-                    centre_q6_of_q3_right_down
-                    + 0.5*(far_q6_of_q3_right_down + near_q6_of_q3_right_down)*side_q6_of_q3_right_down
-                ),
-                0.5*far_q6_of_q3_right_down - 0.5*near_q6_of_q3_right_down,
-            )
-            cos_q6_after_q6_of_q3_right_down = cos(moved_q6_of_q3_right_down)
-            sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
-            # what the motion changes of the pose
-            cost_q6_of_q3_right_down = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
-                    )*(cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down)
-                    + (
-                        sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
-                    )*(sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down)
+                along_q6_of_q3_down = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_down
                 )
-                *radius_q6_right
+                across_q6_of_q3_down = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_down
+                )
+                swing_q6_of_q3_down = sqrt(
+                    across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
+                )
+                if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3_down = (
+                        value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
+                        - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
+                    )
+                    # the arc: cosines from its centre
+                    highest_q6_of_q3_down = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down
+                        )
+                    )
+                    lowest_q6_of_q3_down = (
+                        1.0
+                        if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down < -1.0
+                            else (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down
+                        )
+                    )
+                else:
+                    highest_q6_of_q3_down = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_down = -1.0
+                near_q6_of_q3_down = arctan2(
+                    root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)),
+                    highest_q6_of_q3_down,
+                )
+                far_q6_of_q3_down = arctan2(
+                    root((1.0 - lowest_q6_of_q3_down)*(1.0 + lowest_q6_of_q3_down)),
+                    lowest_q6_of_q3_down,
+                )
+                centre_q6_of_q3_down = arctan2(across_q6_of_q3_down, along_q6_of_q3_down)
+                angle_q6_of_q3_down = arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down)
+                side_q6_of_q3_down = (
+                    1.0
+                    if along_q6_of_q3_down*sin_q6_before_q6_of_q3_down - across_q6_of_q3_down*cos_q6_before_q6_of_q3_down >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3_down = nearest_on_arc(
+                    angle_q6_of_q3_down,
+                    centre_q6_of_q3_down + 0.5*(far_q6_of_q3_down + near_q6_of_q3_down)*side_q6_of_q3_down,
+                    0.5*far_q6_of_q3_down - 0.5*near_q6_of_q3_down,
+                )
+                cos_q6_after_q6_of_q3_down = cos(moved_q6_of_q3_down)
+                sin_q6_after_q6_of_q3_down = sin(moved_q6_of_q3_down)
+                # what the motion changes of the pose
+                cost_q6_of_q3_down = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down
+                        )*(cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down)
+                        + (
+                            sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down
+                        )*(sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down)
+                    )
+                    *radius_q6
+                )
+                if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                    sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                else:
+                    cos_q6_down = cos_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+                    sin_q6_down = sin_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+            wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+            wrist_x_from_q1_here_up = (
+                wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_up
             )
-            if cost_q6_of_q3_right_down > 1e-12 and radius_q6_right > 1e-11:
-                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            wrist_y_from_q1_here_up = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_up
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_up
+            )
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3_up = (
+                wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
+                - a2_squared_plus_a3_squared
+            )
+            if abs(value_q6_of_q3_up) <= size_q6_of_q3:
+                cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
             else:
-                cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
-                sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
-        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
-        r21_from_q1_before_q56_right_down = -r21_from_q1_before_q6_right_down*r23_from_q1_right - r33*radius_q6_right
+                along_q6_of_q3_up = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_up
+                )
+                across_q6_of_q3_up = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
+                )
+                swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
+                if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3_up = (
+                        value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
+                        - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
+                    )
+                    # the arc: cosines from its centre
+                    highest_q6_of_q3_up = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up
+                        )
+                    )
+                    lowest_q6_of_q3_up = (
+                        1.0
+                        if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up < -1.0
+                            else (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up
+                        )
+                    )
+                else:
+                    highest_q6_of_q3_up = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_up = -1.0
+                near_q6_of_q3_up = arctan2(root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)), highest_q6_of_q3_up)
+                far_q6_of_q3_up = arctan2(root((1.0 - lowest_q6_of_q3_up)*(1.0 + lowest_q6_of_q3_up)), lowest_q6_of_q3_up)
+                centre_q6_of_q3_up = arctan2(across_q6_of_q3_up, along_q6_of_q3_up)
+                angle_q6_of_q3_up = arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up)
+                side_q6_of_q3_up = (
+                    1.0
+                    if along_q6_of_q3_up*sin_q6_before_q6_of_q3_up - across_q6_of_q3_up*cos_q6_before_q6_of_q3_up >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3_up = nearest_on_arc(
+                    angle_q6_of_q3_up, centre_q6_of_q3_up + 0.5*(far_q6_of_q3_up + near_q6_of_q3_up)*side_q6_of_q3_up,
+                    0.5*far_q6_of_q3_up - 0.5*near_q6_of_q3_up,
+                )
+                cos_q6_after_q6_of_q3_up = cos(moved_q6_of_q3_up)
+                sin_q6_after_q6_of_q3_up = sin(moved_q6_of_q3_up)
+                # what the motion changes of the pose
+                cost_q6_of_q3_up = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up
+                        )*(cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up)
+                        + (
+                            sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up
+                        )*(sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up)
+                    )
+                    *radius_q6
+                )
+                if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                    sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                else:
+                    cos_q6_up = cos_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+                    sin_q6_up = sin_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+        r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
+        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
         # what the unknown links must span
-        wrist_x_from_q1_right_down = (
-            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
-        )
-        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
-        # what the unknown links must span
-        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
-        reach_right_down = sqrt(
-            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
-            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
-        )
+        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
+        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3_right_down = (
-            (reach_right_down - a2_minus_a3)*(a2_minus_a3 + reach_right_down)*(a2_plus_a3 + reach_right_down)
-            *(a2_plus_a3 - reach_right_down)/scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
-        cos_q3_right_down = (reach_right_down*reach_right_down - a2_squared_plus_a3_squared)/scale_q3
-        sin_q3_right_up_down = (sqrt(sine_square_q3_right_down) if sine_square_q3_right_down > 0.0 else 0.0)
-        if reach_right_down > machine_scale_times_free_angle:
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_down = (
-                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                + arm_along_q2_right_down*wrist_x_from_q1_right_down
-            )
-            across_q2_right_up_down = (
-                arm_along_q2_right_down*wrist_y_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            )
-            length_q2_squared_right_up_down = (
-                across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
-            )
-            length_q2_right_up_down = (
-                sqrt(length_q2_squared_right_up_down)
-                if length_q2_squared_right_up_down > 0.0
-                else 1.0
-            )
-            cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
-            sin_q2_right_up_down = across_q2_right_up_down/length_q2_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_down = (
-                arm_along_q2_right_down*wrist_x_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            )
-            across_q2_right_down_down = (
-                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                + arm_along_q2_right_down*wrist_y_from_q1_right_down
-            )
-            length_q2_squared_right_down_down = (
-                across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
-            )
-            length_q2_right_down_down = (
-                sqrt(length_q2_squared_right_down_down)
-                if length_q2_squared_right_down_down > 0.0
-                else 1.0
-            )
-            cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
-            sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
+        refusal_right_down = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right)*RADIAN  # A1: its turn
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
+            angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_right_up_down = cos(free_a2)  # its reference where it is free
-            sin_q2_right_up_down = sin(free_a2)
-            cos_q2_right_down_down = cos_q2_right_up_down  # its reference where it is free
-            sin_q2_right_down_down = sin_q2_right_up_down
-        wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
-        wrist_x_from_q1_here_left_up = (
-            wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
-            + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_up
-        )
-        wrist_y_from_q1_here_left_up = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_up
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_up
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_left_up = (
-            wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
-            + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2_squared_plus_a3_squared
-        )
-        if abs(value_q6_of_q3_left_up) <= size_q6_of_q3:
-            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-        else:
-            along_q6_of_q3_left_up = (
-                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_left_up = (
-                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_left_up = sqrt(
-                across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
-            )
-            if swing_q6_of_q3_left_up > size_q6_of_q3_times_rounding:
-                level_q6_of_q3_left_up = (
-                    value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                    - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_left_up = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up
-                    )
-                )
-                lowest_q6_of_q3_left_up = (
-                    1.0
-                    if (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up < -1.0
-                        else (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up
-                    )
-                )
-            else:
-                highest_q6_of_q3_left_up = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_left_up = -1.0
-            near_q6_of_q3_left_up = arctan2(
-                root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
-                highest_q6_of_q3_left_up,
-            )
-            far_q6_of_q3_left_up = arctan2(
-                root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
-                lowest_q6_of_q3_left_up,
-            )
-            centre_q6_of_q3_left_up = arctan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up)
-            angle_q6_of_q3_left_up = arctan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up)
-            side_q6_of_q3_left_up = (
-                1.0
-                if along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_left_up = nearest_on_arc(
-                angle_q6_of_q3_left_up,
-                (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
-                0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
-            )
-            cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
-            sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
-            # what the motion changes of the pose
-            cost_q6_of_q3_left_up = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
-                    )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
-                    + (
-                        sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
-                    )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
-                )
-                *radius_q6_left
-            )
-            if cost_q6_of_q3_left_up > 1e-12 and radius_q6_left > 1e-11:
-                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            else:
-                cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
-                sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
-        r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
-        r21_from_q1_before_q56_left_up = r33*radius_q6_left - r21_from_q1_before_q6_left_up*r23_from_q1_left
+            angle_q2_up_down = free_a2
+            angle_q2_down_down = free_a2
+        axis_a2_right_up_down = offset_a2 + angle_q2_up_down*RADIAN  # A2: its turn
+        angle_q3_down = arctan2(sin_q3, cos_q3)
+        part_of_axis_a3_right_up_down = angle_q3_down*RADIAN
+        axis_a3_right_up_down = offset_a3 + part_of_axis_a3_right_up_down  # A3: its turn
+        angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)*RADIAN
+        axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN  # A5: its turn
+        axis_a6_right_down = offset_a6 + arctan2(sin_q6_down, cos_q6_down)*RADIAN  # A6: its turn
+        r21_from_q1_before_q6 = r31*cos_q6_up - r32*sin_q6_up
+        r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
         # what the unknown links must span
-        wrist_x_from_q1_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_up
-        r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
-        wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
-        reach_left_up = sqrt(
-            wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
-        )
+        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
+        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3_left_up = (
-            (reach_left_up - a2_minus_a3)*(a2_minus_a3 + reach_left_up)*(a2_plus_a3 + reach_left_up)
-            *(a2_plus_a3 - reach_left_up)/scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
-        cos_q3_left_up = (reach_left_up*reach_left_up - a2_squared_plus_a3_squared)/scale_q3
-        sin_q3_left_up_up = (sqrt(sine_square_q3_left_up) if sine_square_q3_left_up > 0.0 else 0.0)
-        if reach_left_up > machine_scale_times_free_angle:
-            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_up = (
-                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
-            )
-            across_q2_left_up_up = (
-                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
-            )
-            length_q2_squared_left_up_up = (
-                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
-            )
-            length_q2_left_up_up = sqrt(length_q2_squared_left_up_up) if length_q2_squared_left_up_up > 0.0 else 1.0
-            cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
-            sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_up = (
-                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
-            )
-            across_q2_left_down_up = (
-                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
-            )
-            length_q2_squared_left_down_up = (
-                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
-            )
-            length_q2_left_down_up = sqrt(length_q2_squared_left_down_up) if length_q2_squared_left_down_up > 0.0 else 1.0
-            cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
-            sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
+        refusal_right_up = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = a2 + a3*cos_q3
+            arm_across_q2 = a3*sin_q3
+            angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
+            angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_left_up_up = cos(free_a2)  # its reference where it is free
-            sin_q2_left_up_up = sin(free_a2)
-            cos_q2_left_down_up = cos_q2_left_up_up  # its reference where it is free
-            sin_q2_left_down_up = sin_q2_left_up_up
-        wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
-        wrist_x_from_q1_here_right_up = (
-            wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
-            + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
-        )
-        wrist_y_from_q1_here_right_up = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_up
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_up
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3_right_up = (
-            wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
-            + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2_squared_plus_a3_squared
-        )
-        if abs(value_q6_of_q3_right_up) <= size_q6_of_q3:
-            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-        else:
-            along_q6_of_q3_right_up = (
-                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_right_up = (
-                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_right_up = sqrt(
-                across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
-            )
-            if swing_q6_of_q3_right_up > size_q6_of_q3_times_rounding:
-                level_q6_of_q3_right_up = (
-                    value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
-                    - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_right_up = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up
-                    )
-                )
-                lowest_q6_of_q3_right_up = (
-                    1.0
-                    if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up < -1.0
-                        else (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up
-                    )
-                )
-            else:
-                highest_q6_of_q3_right_up = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3_right_up = -1.0
-            near_q6_of_q3_right_up = arctan2(
-                root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)),
-                highest_q6_of_q3_right_up,
-            )
-            far_q6_of_q3_right_up = arctan2(
-                root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)),
-                lowest_q6_of_q3_right_up,
-            )
-            centre_q6_of_q3_right_up = arctan2(across_q6_of_q3_right_up, along_q6_of_q3_right_up)
-            angle_q6_of_q3_right_up = arctan2(sin_q6_before_q6_of_q3_right_up, cos_q6_before_q6_of_q3_right_up)
-            side_q6_of_q3_right_up = (
-                1.0
-                if along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0
-                else -1.0
-            )
-            moved_q6_of_q3_right_up = nearest_on_arc(
-                angle_q6_of_q3_right_up,
-                (centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)*side_q6_of_q3_right_up),
-                0.5*far_q6_of_q3_right_up - 0.5*near_q6_of_q3_right_up,
-            )
-            cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
-            sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
-            # what the motion changes of the pose
-            cost_q6_of_q3_right_up = (
-                sqrt(
-                    (
-                        cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
-                    )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
-                    + (
-                        sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
-                    )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
-                )
-                *radius_q6_right
-            )
-            if cost_q6_of_q3_right_up > 1e-12 and radius_q6_right > 1e-11:
-                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            else:
-                cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
-                sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
-        r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
-        r21_from_q1_before_q56_right_up = r33*radius_q6_right - r21_from_q1_before_q6_right_up*r23_from_q1_right
-        # what the unknown links must span
-        wrist_x_from_q1_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_up
-        r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
-        # what the unknown links must span
-        wrist_y_from_q1_right_up = wrist_z + d5*r22_from_q1_before_q6_right_up - d1
-        reach_right_up = sqrt(
-            wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
-        )
-        # kept as a product
-        sine_square_q3_right_up = (
-            (reach_right_up - a2_minus_a3)*(a2_minus_a3 + reach_right_up)*(a2_plus_a3 + reach_right_up)
-            *(a2_plus_a3 - reach_right_up)/scale_q3_squared
-        )
-        cos_q3_right_up = (reach_right_up*reach_right_up - a2_squared_plus_a3_squared)/scale_q3
-        sin_q3_right_up_up = (sqrt(sine_square_q3_right_up) if sine_square_q3_right_up > 0.0 else 0.0)
-        if reach_right_up > machine_scale_times_free_angle:
-            arm_along_q2_right_up = a2 + a3*cos_q3_right_up
-            arm_across_q2_right_up_up = a3*sin_q3_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_up = (
-                arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
-            )
-            across_q2_right_up_up = (
-                arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
-            )
-            length_q2_squared_right_up_up = (
-                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
-            )
-            length_q2_right_up_up = sqrt(length_q2_squared_right_up_up) if length_q2_squared_right_up_up > 0.0 else 1.0
-            cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
-            sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_up = (
-                arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
-            )
-            across_q2_right_down_up = (
-                arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
-            )
-            length_q2_squared_right_down_up = (
-                across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
-            )
-            length_q2_right_down_up = (
-                sqrt(length_q2_squared_right_down_up)
-                if length_q2_squared_right_down_up > 0.0
-                else 1.0
-            )
-            cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
-            sin_q2_right_down_up = across_q2_right_down_up/length_q2_right_down_up
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_right_up_up = cos(free_a2)  # its reference where it is free
-            sin_q2_right_up_up = sin(free_a2)
-            cos_q2_right_down_up = cos_q2_right_up_up  # its reference where it is free
-            sin_q2_right_down_up = sin_q2_right_up_up
-        refusal_left_down = 0.0 if sine_square_q3_left_down >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left)/DEGREE  # A1: its turn
-        axis_a2_left_up_down = offset_a2 + arctan2(sin_q2_left_up_down, cos_q2_left_up_down)/DEGREE  # A2: its turn
-        axis_a3_left_up_down = offset_a3 + arctan2(sin_q3_left_up_down, cos_q3_left_down)/DEGREE  # A3: its turn
-        cos_q23_left_up_down = cos_q2_left_up_down*cos_q3_left_down - sin_q2_left_up_down*sin_q3_left_up_down
-        sin_q23_left_up_down = cos_q2_left_up_down*sin_q3_left_up_down + cos_q3_left_down*sin_q2_left_up_down
-        # q4: what the sum q234 leaves
-        cos_q4_left_up_down = (
-            r22_from_q1_before_q6_left_down*cos_q23_left_up_down
-            + r21_from_q1_before_q56_left_down*sin_q23_left_up_down
-        )
-        sin_q4_left_up_down = (
-            r21_from_q1_before_q56_left_down*cos_q23_left_up_down
-            - r22_from_q1_before_q6_left_down*sin_q23_left_up_down
-        )
-        axis_a4_left_up_down = offset_a4 + arctan2(sin_q4_left_up_down, cos_q4_left_up_down)/DEGREE  # A4: its turn
-        axis_a5_left_down = offset_a5 + arctan2(radius_q6_left, -r23_from_q1_left)/DEGREE  # A5: its turn
-        axis_a6_left_down = offset_a6 + arctan2(sin_q6_left_down, cos_q6_left_down)/DEGREE  # A6: its turn
-        refusal_right_down = 0.0 if sine_square_q3_right_down >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right)/DEGREE  # A1: its turn
-        axis_a2_right_up_down = offset_a2 + arctan2(sin_q2_right_up_down, cos_q2_right_up_down)/DEGREE  # A2: its turn
-        axis_a3_right_up_down = offset_a3 + arctan2(sin_q3_right_up_down, cos_q3_right_down)/DEGREE  # A3: its turn
-        cos_q23_right_up_down = cos_q2_right_up_down*cos_q3_right_down - sin_q2_right_up_down*sin_q3_right_up_down
-        sin_q23_right_up_down = cos_q2_right_up_down*sin_q3_right_up_down + cos_q3_right_down*sin_q2_right_up_down
-        # q4: what the sum q234 leaves
-        cos_q4_right_up_down = (
-            r22_from_q1_before_q6_right_down*cos_q23_right_up_down
-            + r21_from_q1_before_q56_right_down*sin_q23_right_up_down
-        )
-        sin_q4_right_up_down = (
-            r21_from_q1_before_q56_right_down*cos_q23_right_up_down
-            - r22_from_q1_before_q6_right_down*sin_q23_right_up_down
-        )
-        axis_a4_right_up_down = offset_a4 + arctan2(sin_q4_right_up_down, cos_q4_right_up_down)/DEGREE  # A4: its turn
-        axis_a5_right_down = offset_a5 + arctan2(radius_q6_right, -r23_from_q1_right)/DEGREE  # A5: its turn
-        axis_a6_right_down = offset_a6 + arctan2(sin_q6_right_down, cos_q6_right_down)/DEGREE  # A6: its turn
-        # A2: its turn
-        axis_a2_left_down_down = offset_a2 + arctan2(sin_q2_left_down_down, cos_q2_left_down_down)/DEGREE
-        axis_a3_left_down_down = offset_a3_times_2 - axis_a3_left_up_down  # A3: its turn
-        cos_q23_left_down_down = cos_q2_left_down_down*cos_q3_left_down + sin_q2_left_down_down*sin_q3_left_up_down
-        sin_q23_left_down_down = cos_q3_left_down*sin_q2_left_down_down - cos_q2_left_down_down*sin_q3_left_up_down
-        # q4: what the sum q234 leaves
-        cos_q4_left_down_down = (
-            r22_from_q1_before_q6_left_down*cos_q23_left_down_down
-            + r21_from_q1_before_q56_left_down*sin_q23_left_down_down
-        )
-        sin_q4_left_down_down = (
-            r21_from_q1_before_q56_left_down*cos_q23_left_down_down
-            - r22_from_q1_before_q6_left_down*sin_q23_left_down_down
-        )
-        # A4: its turn
-        axis_a4_left_down_down = offset_a4 + arctan2(sin_q4_left_down_down, cos_q4_left_down_down)/DEGREE
-        # A2: its turn
-        axis_a2_right_down_down = offset_a2 + arctan2(sin_q2_right_down_down, cos_q2_right_down_down)/DEGREE
-        axis_a3_right_down_down = offset_a3_times_2 - axis_a3_right_up_down  # A3: its turn
-        cos_q23_right_down_down = (
-            cos_q2_right_down_down*cos_q3_right_down + sin_q2_right_down_down*sin_q3_right_up_down
-        )
-        sin_q23_right_down_down = (
-            cos_q3_right_down*sin_q2_right_down_down - cos_q2_right_down_down*sin_q3_right_up_down
-        )
-        # q4: what the sum q234 leaves
-        cos_q4_right_down_down = (
-            r22_from_q1_before_q6_right_down*cos_q23_right_down_down
-            + r21_from_q1_before_q56_right_down*sin_q23_right_down_down
-        )
-        sin_q4_right_down_down = (
-            r21_from_q1_before_q56_right_down*cos_q23_right_down_down
-            - r22_from_q1_before_q6_right_down*sin_q23_right_down_down
-        )
-        # A4: its turn
-        axis_a4_right_down_down = offset_a4 + arctan2(sin_q4_right_down_down, cos_q4_right_down_down)/DEGREE
-        refusal_left_up = 0.0 if sine_square_q3_left_up >= -1e-12 else 3.0  # q3: out of reach
-        axis_a2_left_up_up = offset_a2 + arctan2(sin_q2_left_up_up, cos_q2_left_up_up)/DEGREE  # A2: its turn
-        axis_a3_left_up_up = offset_a3 + arctan2(sin_q3_left_up_up, cos_q3_left_up)/DEGREE  # A3: its turn
-        cos_q23_left_up_up = cos_q2_left_up_up*cos_q3_left_up - sin_q2_left_up_up*sin_q3_left_up_up
-        sin_q23_left_up_up = cos_q2_left_up_up*sin_q3_left_up_up + cos_q3_left_up*sin_q2_left_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_left_up_up = (
-            r22_from_q1_before_q6_left_up*cos_q23_left_up_up + r21_from_q1_before_q56_left_up*sin_q23_left_up_up
-        )
-        sin_q4_left_up_up = (
-            r21_from_q1_before_q56_left_up*cos_q23_left_up_up - r22_from_q1_before_q6_left_up*sin_q23_left_up_up
-        )
-        axis_a4_left_up_up = offset_a4 + arctan2(sin_q4_left_up_up, cos_q4_left_up_up)/DEGREE  # A4: its turn
-        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: its turn
-        axis_a6_left_up = offset_a6 + arctan2(sin_q6_left_up, cos_q6_left_up)/DEGREE  # A6: its turn
-        refusal_right_up = 0.0 if sine_square_q3_right_up >= -1e-12 else 3.0  # q3: out of reach
-        axis_a2_right_up_up = offset_a2 + arctan2(sin_q2_right_up_up, cos_q2_right_up_up)/DEGREE  # A2: its turn
-        axis_a3_right_up_up = offset_a3 + arctan2(sin_q3_right_up_up, cos_q3_right_up)/DEGREE  # A3: its turn
-        cos_q23_right_up_up = cos_q2_right_up_up*cos_q3_right_up - sin_q2_right_up_up*sin_q3_right_up_up
-        sin_q23_right_up_up = cos_q2_right_up_up*sin_q3_right_up_up + cos_q3_right_up*sin_q2_right_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_right_up_up = (
-            r22_from_q1_before_q6_right_up*cos_q23_right_up_up + r21_from_q1_before_q56_right_up*sin_q23_right_up_up
-        )
-        sin_q4_right_up_up = (
-            r21_from_q1_before_q56_right_up*cos_q23_right_up_up - r22_from_q1_before_q6_right_up*sin_q23_right_up_up
-        )
-        axis_a4_right_up_up = offset_a4 + arctan2(sin_q4_right_up_up, cos_q4_right_up_up)/DEGREE  # A4: its turn
+            angle_q2_up_up = free_a2
+            angle_q2_down_up = free_a2
+        axis_a2_right_up_up = offset_a2 + angle_q2_up_up*RADIAN  # A2: its turn
+        angle_q3_up = arctan2(sin_q3, cos_q3)
+        part_of_axis_a3 = angle_q3_up*RADIAN
+        axis_a3_right_up_up = offset_a3 + part_of_axis_a3  # A3: its turn
+        angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)*RADIAN
         axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down  # A5: its turn
-        axis_a6_right_up = offset_a6 + arctan2(sin_q6_right_up, cos_q6_right_up)/DEGREE  # A6: its turn
-        axis_a2_left_down_up = offset_a2 + arctan2(sin_q2_left_down_up, cos_q2_left_down_up)/DEGREE  # A2: its turn
-        axis_a3_left_down_up = offset_a3_times_2 - axis_a3_left_up_up  # A3: its turn
-        cos_q23_left_down_up = cos_q2_left_down_up*cos_q3_left_up + sin_q2_left_down_up*sin_q3_left_up_up
-        sin_q23_left_down_up = cos_q3_left_up*sin_q2_left_down_up - cos_q2_left_down_up*sin_q3_left_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_left_down_up = (
-            r22_from_q1_before_q6_left_up*cos_q23_left_down_up + r21_from_q1_before_q56_left_up*sin_q23_left_down_up
-        )
-        sin_q4_left_down_up = (
-            r21_from_q1_before_q56_left_up*cos_q23_left_down_up - r22_from_q1_before_q6_left_up*sin_q23_left_down_up
-        )
-        axis_a4_left_down_up = offset_a4 + arctan2(sin_q4_left_down_up, cos_q4_left_down_up)/DEGREE  # A4: its turn
-        axis_a2_right_down_up = offset_a2 + arctan2(sin_q2_right_down_up, cos_q2_right_down_up)/DEGREE  # A2: its turn
-        axis_a3_right_down_up = offset_a3_times_2 - axis_a3_right_up_up  # A3: its turn
-        cos_q23_right_down_up = cos_q2_right_down_up*cos_q3_right_up + sin_q2_right_down_up*sin_q3_right_up_up
-        sin_q23_right_down_up = cos_q3_right_up*sin_q2_right_down_up - cos_q2_right_down_up*sin_q3_right_up_up
-        # q4: what the sum q234 leaves
-        cos_q4_right_down_up = (
-            r22_from_q1_before_q6_right_up*cos_q23_right_down_up
-            + r21_from_q1_before_q56_right_up*sin_q23_right_down_up
-        )
-        sin_q4_right_down_up = (
-            r21_from_q1_before_q56_right_up*cos_q23_right_down_up
-            - r22_from_q1_before_q6_right_up*sin_q23_right_down_up
-        )
-        axis_a4_right_down_up = offset_a4 + arctan2(sin_q4_right_down_up, cos_q4_right_down_up)/DEGREE  # A4: its turn
+        axis_a6_right_up = offset_a6 + arctan2(sin_q6_up, cos_q6_up)*RADIAN  # A6: its turn
+        axis_a2_right_down_down = offset_a2 + angle_q2_down_down*RADIAN  # A2: its turn
+        axis_a3_right_down_down = offset_a3 - part_of_axis_a3_right_up_down  # A3: its turn
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_down_down)*RADIAN
+        axis_a2_right_down_up = offset_a2 + angle_q2_down_up*RADIAN  # A2: its turn
+        axis_a3_right_down_up = offset_a3 - part_of_axis_a3  # A3: its turn
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_down_up)*RADIAN
         return (
             (
                 (
@@ -2049,6 +1636,8 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        q6_radius_of_q5 = radius_q6*sigma_wrist
+        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         if radius_q6 > 1e-11:
             along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
@@ -2058,95 +1647,96 @@ def unrolled(k: Constants) -> Unrolled:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3 = cos(free_a6)  # its reference where it is free
             sin_q6_before_q6_of_q3 = sin(free_a6)
-        q6_radius_of_q5 = radius_q6*sigma_wrist
-        r23_from_q1 = r23*cos_q1 - r13*sin_q1
-        cos_q5 = -r23_from_q1  # q5: linear pair in the q6 radius and r32 equations
-        wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
-        wrist_x_from_q1_along = -d5*r31*cos_q5
         wrist_z = z - d6*r33
-        wrist_y_from_q1_fixed = wrist_z - d1
-        wrist_y_from_q1_along = d5*r32
-        wrist_x_from_q1_across = d5*r32*cos_q5
-        wrist_y_from_q1_across = d5*r31
-        wrist_x_from_q1_here = (
-            wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
-            + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
-        )
-        wrist_y_from_q1_here = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
-        )
-        # a later step needs this of q6: no larger in size than
-        value_q6_of_q3 = (
-            wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here
-            - a2_squared_plus_a3_squared
-        )
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if radius_q6 > 0.01:
             cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
             sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
         else:
-            along_q6_of_q3 = (
-                2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_y_from_q1_across = d5*r31
+            wrist_x_from_q1_here = (
+                wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
+                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
             )
-            across_q6_of_q3 = (
-                2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            wrist_y_from_q1_here = (
+                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
+                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
             )
-            swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-            if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
-                level_q6_of_q3 = (
-                    value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3 = (
-                    1.0
-                    if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
-                    else (
-                        -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
-                    )
-                )
-                lowest_q6_of_q3 = (
-                    1.0
-                    if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
-                    else (
-                        -1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                        else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
-                    )
-                )
-            else:
-                highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
-                lowest_q6_of_q3 = -1.0
-            near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-            far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-            centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
-            angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
-            side_q6_of_q3 = (
-                1.0
-                if along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0
-                else -1.0
+            # a later step needs this of q6: no larger in size than
+            value_q6_of_q3 = (
+                wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here
+                - a2_squared_plus_a3_squared
             )
-            moved_q6_of_q3 = nearest_on_arc(
-                angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-                0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
-            )
-            cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-            sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-            # what the motion changes of the pose
-            cost_q6_of_q3 = (
-                sqrt(
-                    (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
-                    + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
-                )
-                *radius_q6
-            )
-            if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+            if abs(value_q6_of_q3) <= size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
                 sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
             else:
-                cos_q6 = cos_q6_after_q6_of_q3  # moved to where the rest can be reached
-                sin_q6 = sin_q6_after_q6_of_q3  # moved to where the rest can be reached
+                along_q6_of_q3 = (
+                    2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+                )
+                across_q6_of_q3 = (
+                    2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
+                    )
+                    # the arc: cosines from its centre
+                    highest_q6_of_q3 = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                    lowest_q6_of_q3 = (
+                        1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                else:
+                    highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3 = -1.0
+                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
+                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
+                centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
+                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
+                side_q6_of_q3 = (
+                    1.0
+                    if along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+                )
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                # what the motion changes of the pose
+                cost_q6_of_q3 = (
+                    sqrt(
+                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
+                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
+                    )
+                    *radius_q6
+                )
+                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
+                    sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+                else:
+                    cos_q6 = cos_q6_after_q6_of_q3  # moved to where the rest can be reached
+                    sin_q6 = sin_q6_after_q6_of_q3  # moved to where the rest can be reached
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
         # what the unknown links must span
@@ -2161,35 +1751,26 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = (
-                sqrt(across_q2*across_q2 + along_q2*along_q2)
-                if across_q2*across_q2 + along_q2*along_q2 > 0.0
-                else 1.0
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
+            angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
+            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
+            angle_q2 = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(free_a2)  # its reference where it is free
-            sin_q2 = sin(free_a2)
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3)/DEGREE  # A3: its turn
-        cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
-        sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
-        cos_q4 = r22_from_q1_before_q6*cos_q23 + r21_from_q1_before_q56*sin_q23  # q4: what the sum q234 leaves
-        sin_q4 = r21_from_q1_before_q56*cos_q23 - r22_from_q1_before_q6*sin_q23
-        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4)/DEGREE  # A4: its turn
-        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5)/DEGREE  # A5: its turn
-        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6)/DEGREE  # A6: its turn
+            angle_q2 = free_a2
+        axis_a2 = offset_a2 + angle_q2*RADIAN  # A2: its turn
+        angle_q3 = arctan2(sin_q3, cos_q3)
+        axis_a3 = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        angle_with_q4 = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)*RADIAN
+        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5)*RADIAN  # A5: its turn
+        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     return Unrolled(every_branch, branches, branch)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -50,10 +50,10 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, _, ref_a4, ref_a5, ref_a6 = reference
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9
-            and abs(ref_a6) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a4 <= 1e9
+            and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9
         ):
             return 2*(2.0,)
         # columns of length one, at right angles
@@ -83,40 +83,31 @@ def unrolled(k: Constants) -> Unrolled:
             return 2*(3.0,)
         radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
         if radius_a4 > 1e-11:
-            cos_a4_upright = r33/radius_a4  # its reference where it is free
-            sin_a4_upright = r13/radius_a4
-            cos_a4_flipped = -cos_a4_upright  # its reference where it is free
-            sin_a4_flipped = -sin_a4_upright
+            direction_x_a4_upright = r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_y_a4_upright = r13
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_a4_upright = cos(free_a4)  # its reference where it is free
-            sin_a4_upright = sin(free_a4)
-            cos_a4_flipped = cos_a4_upright  # its reference where it is free
-            sin_a4_flipped = sin_a4_upright
+            # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4_upright = cos(free_a4)
+            direction_y_a4_upright = sin(free_a4)
+            # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4_flipped = direction_x_a4_upright
+            direction_y_a4_flipped = direction_y_a4_upright
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        axis_a4_upright = offset_a4 + arctan2(sin_a4_upright, cos_a4_upright + 0.0)/DEGREE  # A4: its turn
+        # A4: its turn
+        axis_a4_upright = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_upright - open_a4 < 179.999999999:
             axis_a4_upright = nearest_period(axis_a4_upright, open_a4)
-        r11_from_a4_upright = r11*cos_a4_upright - r31*sin_a4_upright
-        r12_from_a4_upright = r12*cos_a4_upright - r32*sin_a4_upright
-        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
-        axis_a6_upright = offset_a6 + arctan2(-r12_from_a4_upright, r11_from_a4_upright + 0.0)/DEGREE  # A6: its turn
-        if not -180.000000001 <= axis_a6_upright - open_a6 < 179.999999999:
-            axis_a6_upright = nearest_period(axis_a6_upright, open_a6)
-        if radius_a4 > 1e-11:
-            direction_of_axis_a4_flipped = 180.0 + axis_a4_upright
-            direction_of_axis_a6_flipped = 180.0 + axis_a6_upright
-        else:
-            direction_of_axis_a4_flipped = offset_a4 + arctan2(sin_a4_flipped + 0.0, cos_a4_flipped + 0.0)/DEGREE
-            r11_from_a4_flipped = r11*cos_a4_flipped - r31*sin_a4_flipped
-            r12_from_a4_flipped = r12*cos_a4_flipped - r32*sin_a4_flipped
-            direction_of_axis_a6_flipped = (
-                offset_a6 + arctan2(-r12_from_a4_flipped + 0.0, r11_from_a4_flipped + 0.0)/DEGREE
-            )
         open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
         axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_upright - open_a5 < 179.999999999:
             axis_a5_upright = nearest_period(axis_a5_upright, open_a5)
+        r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
+        sin_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
+        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
+        axis_a6_upright = offset_a6 + arctan2(sin_a6_upright, r11_from_a4_upright + 0.0)/DEGREE  # A6: its turn
+        if not -180.000000001 <= axis_a6_upright - open_a6 < 179.999999999:
+            axis_a6_upright = nearest_period(axis_a6_upright, open_a6)
         # limits of A4, limits of A5, limits of A6
         refusal_upright = (
             0.0
@@ -125,13 +116,21 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_a5_upright <= highest_a5) and (axis_a6_upright <= highest_a6)
             else 3.0
         )
-        axis_a4_flipped = direction_of_axis_a4_flipped  # A4: its turn
+        if radius_a4 > 1e-11:
+            direction_of_axis_a4 = 180.0 + axis_a4_upright
+            direction_of_axis_a6 = 180.0 + axis_a6_upright
+        else:
+            direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped + 0.0, direction_x_a4_flipped + 0.0)/DEGREE
+            r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
+            sin_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
+            direction_of_axis_a6 = offset_a6 + arctan2(sin_a6_flipped + 0.0, r11_from_a4_flipped + 0.0)/DEGREE
+        axis_a4_flipped = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_flipped - open_a4 < 179.999999999:
             axis_a4_flipped = nearest_period(axis_a4_flipped, open_a4)
         axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_flipped - open_a5 < 179.999999999:
             axis_a5_flipped = nearest_period(axis_a5_flipped, open_a5)
-        axis_a6_flipped = direction_of_axis_a6_flipped  # A6: its turn
+        axis_a6_flipped = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_flipped - open_a6 < 179.999999999:
             axis_a6_flipped = nearest_period(axis_a6_flipped, open_a6)
         # limits of A4, limits of A5, limits of A6
@@ -159,41 +158,41 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         _, _, _, ref_a4, _, _ = reference
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        if radius_a4 > 1e-11:
-            cos_a4_upright = r33/radius_a4  # its reference where it is free
-            sin_a4_upright = r13/radius_a4
-            cos_a4_flipped = -cos_a4_upright  # its reference where it is free
-            sin_a4_flipped = -sin_a4_upright
-        else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_a4_upright = cos(free_a4)  # its reference where it is free
-            sin_a4_upright = sin(free_a4)
-            cos_a4_flipped = cos_a4_upright  # its reference where it is free
-            sin_a4_flipped = sin_a4_upright
-        axis_a4_upright = offset_a4 + arctan2(sin_a4_upright, cos_a4_upright)/DEGREE  # A4: its turn
-        r11_from_a4_upright = r11*cos_a4_upright - r31*sin_a4_upright
-        r12_from_a4_upright = r12*cos_a4_upright - r32*sin_a4_upright
-        axis_a6_upright = offset_a6 + arctan2(-r12_from_a4_upright, r11_from_a4_upright)/DEGREE  # A6: its turn
-        if radius_a4 > 1e-11:
-            direction_of_axis_a4_flipped = 180.0 + axis_a4_upright
-            direction_of_axis_a6_flipped = 180.0 + axis_a6_upright
-        else:
-            direction_of_axis_a4_flipped = offset_a4 + arctan2(sin_a4_flipped, cos_a4_flipped)/DEGREE
-            r11_from_a4_flipped = r11*cos_a4_flipped - r31*sin_a4_flipped
-            r12_from_a4_flipped = r12*cos_a4_flipped - r32*sin_a4_flipped
-            direction_of_axis_a6_flipped = offset_a6 + arctan2(-r12_from_a4_flipped, r11_from_a4_flipped)/DEGREE
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4)/DEGREE  # A5: its turn
-        axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4)/DEGREE  # A5: its turn
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        if radius_a4 > 1e-11:
+            direction_x_a4_upright = r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_y_a4_upright = r13
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4_upright = cos(free_a4)
+            direction_y_a4_upright = sin(free_a4)
+            # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4_flipped = direction_x_a4_upright
+            direction_y_a4_flipped = direction_y_a4_upright
+        axis_a4 = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright)*RADIAN  # A4: its turn
+        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4)*RADIAN  # A5: its turn
+        r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
+        sin_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
+        axis_a6 = offset_a6 + arctan2(sin_a6_upright, r11_from_a4_upright)*RADIAN  # A6: its turn
+        if radius_a4 > 1e-11:
+            direction_of_axis_a4 = 180.0 + axis_a4
+            direction_of_axis_a6 = 180.0 + axis_a6
+        else:
+            direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped)*RADIAN
+            r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
+            sin_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
+            direction_of_axis_a6 = offset_a6 + arctan2(sin_a6_flipped, r11_from_a4_flipped)*RADIAN
+        axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4)*RADIAN  # A5: its turn
         return (
-            (axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright),
-            (axis_a1, axis_a2, axis_a3, direction_of_axis_a4_flipped, axis_a5_flipped, direction_of_axis_a6_flipped),
+            (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5_upright, axis_a6),
+            (axis_a1, axis_a2, axis_a3, direction_of_axis_a4, axis_a5_flipped, direction_of_axis_a6),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
@@ -201,30 +200,28 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         (sigma_wrist,) = signs
         _, _, _, ref_a4, _, _ = reference
-        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        if radius_a4 > 1e-11:
-            along_a4 = r33*sigma_wrist  # a4: polar angle in the r33 and r13 equations
-            cos_a4 = along_a4/radius_a4  # its reference where it is free
-            across_a4 = r13*sigma_wrist
-            sin_a4 = across_a4/radius_a4
-        else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_a4 = cos(free_a4)  # its reference where it is free
-            sin_a4 = sin(free_a4)
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4)/DEGREE  # A4: its turn
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        if radius_a4 > 1e-11:
+            # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4 = r33*sigma_wrist
+            direction_y_a4 = r13*sigma_wrist
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            direction_x_a4 = cos(free_a4)  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_y_a4 = sin(free_a4)
+        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4)*RADIAN  # A4: its turn
         a4_radius_of_a5 = radius_a4*sigma_wrist
         sin_a5 = -r23
-        axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5)/DEGREE  # A5: its turn
-        r11_from_a4 = r11*cos_a4 - r31*sin_a4
-        r12_from_a4 = r12*cos_a4 - r32*sin_a4
-        sin_a6 = -r12_from_a4
-        axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4)/DEGREE  # A6: its turn
+        axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5)*RADIAN  # A5: its turn
+        r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
+        sin_a6 = direction_y_a4*r32 - direction_x_a4*r12
+        axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4)*RADIAN  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     return Unrolled(every_branch, branches, branch)

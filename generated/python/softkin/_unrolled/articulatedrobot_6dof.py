@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -56,12 +56,12 @@ def unrolled(k: Constants) -> Unrolled:
     single_a6 = k.single_a6
     swing_scale_q3 = k.swing_scale_q3
     machine_scale_times_free_angle = 1e-11*machine_scale
-    a2_squared_plus_effective_q3_squared = a2*a2 + effective_q3*effective_q3
     a2_plus_effective_q3 = a2 + effective_q3
     a2_minus_effective_q3 = a2 - effective_q3
     swing_scale_q3_squared = swing_scale_q3*swing_scale_q3
-    a3_by_effective_q3 = a3/effective_q3
-    d4_by_effective_q3 = d4/effective_q3
+    a2_squared_plus_effective_q3_squared = a2*a2 + effective_q3*effective_q3
+    angle_of_a3_by_effective_q3 = arctan2(d4/effective_q3 + 0.0, a3/effective_q3 + 0.0)
+    offset_a6_plus_180 = 180.0 + offset_a6
     offset_a5_times_2 = 2.0*offset_a5
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -71,10 +71,11 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9 and abs(ref_a4) <= 1e9 and abs(ref_a5) <= 1e9 and abs(ref_a6) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
+            and -1e9 <= ref_a6 <= 1e9
         ):
             return 8*(2.0,)
         # columns of length one, at right angles
@@ -97,217 +98,187 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_q1 >= -1e-12):
             return 8*(3.0,)
         if distance_q1 > machine_scale_times_free_angle:
+            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
+            sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
             cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
+            cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
             # its reference where it is free
-            cos_q1_front = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1
-            sin_q1_front = (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1
-            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
+            cos_q1_front = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
+            cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
+            sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
+            sin_q1_front = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
+            # its reference where it is free
+            cos_q1_back = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
+            sin_q1_back = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)  # its reference where it is free
             sin_q1_front = sin(free_a1)
             cos_q1_back = cos_q1_front  # its reference where it is free
             sin_q1_back = sin_q1_front
-        wrist_x_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
+        r13_from_q1 = r13*cos_q1_front + r23*sin_q1_front
+        wrist_x_from_q1 = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
-        cos_swing_q3_front = (reach_front*reach_front - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3_front = (
-            (reach_front - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_front)
-            *(a2_plus_effective_q3 + reach_front)*(a2_plus_effective_q3 - reach_front)/swing_scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
+            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
-        sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
-        cos_q3_front_down = a3_by_effective_q3*cos_swing_q3_front - d4_by_effective_q3*sin_swing_q3_front_down
-        sin_q3_front_down = a3_by_effective_q3*sin_swing_q3_front_down + d4_by_effective_q3*cos_swing_q3_front
-        cos_q3_front_up = a3_by_effective_q3*cos_swing_q3_front + d4_by_effective_q3*sin_swing_q3_front_down
-        sin_q3_front_up = d4_by_effective_q3*cos_swing_q3_front - a3_by_effective_q3*sin_swing_q3_front_down
-        if reach_front > machine_scale_times_free_angle:
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = sqrt(length_q2_squared_front_down) if length_q2_squared_front_down > 0.0 else 1.0
-            cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
-            sin_q2_front_down = across_q2_front_down/length_q2_front_down
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = sqrt(length_q2_squared_front_up) if length_q2_squared_front_up > 0.0 else 1.0
-            cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
-            sin_q2_front_up = across_q2_front_up/length_q2_front_up
+        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = effective_q3*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3*cos_swing_q3
+            angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
+            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
+            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_front_down = cos(free_a2)  # its reference where it is free
-            sin_q2_front_down = sin(free_a2)
-            cos_q2_front_up = cos_q2_front_down  # its reference where it is free
-            sin_q2_front_up = sin_q2_front_down
-        r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
-        sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
-        cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
-        r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
-        r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
+            angle_q2_down = free_a2
+            angle_q2_up = free_a2
+        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        angle_q23 = angle_q2_down + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        r23_from_q1 = r23*cos_q1_front - r13*sin_q1_front
         # q4: direction and distance of a point
-        radius_q4_front_down = sqrt(
-            r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
-        )
-        if radius_q4_front_down > 1e-11:
-            cos_q4_front_down_down = -r13_from_q123_front_down/radius_q4_front_down  # its reference where it is free
-            sin_q4_front_down_down = r23_from_q1_front/radius_q4_front_down
-            cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
-            sin_q4_front_down_up = -sin_q4_front_down_down
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        if radius_q4 > 1e-11:
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = -r13_from_q123
+            direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4_front_down_down = cos(free_a4)  # its reference where it is free
-            sin_q4_front_down_down = sin(free_a4)
-            cos_q4_front_down_up = cos_q4_front_down_down  # its reference where it is free
-            sin_q4_front_down_up = sin_q4_front_down_down
-        sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up
-        cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up
-        r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up
-        # q4: direction and distance of a point
-        radius_q4_front_up = sqrt(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
-        if radius_q4_front_up > 1e-11:
-            cos_q4_front_up_down = -r13_from_q123_front_up/radius_q4_front_up  # its reference where it is free
-            sin_q4_front_up_down = r23_from_q1_front/radius_q4_front_up
-            cos_q4_front_up_up = -cos_q4_front_up_down  # its reference where it is free
-            sin_q4_front_up_up = -sin_q4_front_up_down
-        else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4_front_up_down = cos(free_a4)  # its reference where it is free
-            sin_q4_front_up_down = sin(free_a4)
-            cos_q4_front_up_up = cos_q4_front_up_down  # its reference where it is free
-            sin_q4_front_up_up = sin_q4_front_up_down
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = cos(free_a4)
+            direction_y_q4_down = sin(free_a4)
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_up = direction_x_q4_down
+            direction_y_q4_up = direction_y_q4_down
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         # A4: its turn
-        axis_a4_front_down_down = offset_a4 + arctan2(sin_q4_front_down_down, cos_q4_front_down_down + 0.0)/DEGREE
+        axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_front_down_down - open_a4 < 179.999999999:
             axis_a4_front_down_down = nearest_period(axis_a4_front_down_down, open_a4)
-        r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
-        r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
-        r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down
-        r21_from_q1234_front_down_down = (
-            -r21_from_q1_front*cos_q4_front_down_down - r11_from_q123_front_down*sin_q4_front_down_down
-        )
-        r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front
-        r12_from_q1_front = r12*cos_q1_front + r22*sin_q1_front
-        r12_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down
-        r22_from_q1234_front_down_down = (
-            -r22_from_q1_front*cos_q4_front_down_down - r12_from_q123_front_down*sin_q4_front_down_down
-        )
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
+        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        if not -180.000000001 <= axis_a5_front_down_down - open_a5 < 179.999999999:
+            axis_a5_front_down_down = nearest_period(axis_a5_front_down_down, open_a5)
+        r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
+        r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
+        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
+        r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
+        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         # A6: its turn
         axis_a6_front_down_down = (
-            offset_a6 + arctan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down + 0.0)/DEGREE
+            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down + 0.0)/DEGREE
         )
         if not -180.000000001 <= axis_a6_front_down_down - open_a6 < 179.999999999:
             axis_a6_front_down_down = nearest_period(axis_a6_front_down_down, open_a6)
-        if radius_q4_front_down > 1e-11:
-            direction_of_axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
-            direction_of_axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
-        else:
-            direction_of_axis_a4_front_down_up = (
-                offset_a4 + arctan2(sin_q4_front_down_up + 0.0, cos_q4_front_down_up + 0.0)/DEGREE
-            )
-            r21_from_q1234_front_down_up = (
-                -r21_from_q1_front*cos_q4_front_down_up - r11_from_q123_front_down*sin_q4_front_down_up
-            )
-            r22_from_q1234_front_down_up = (
-                -r22_from_q1_front*cos_q4_front_down_up - r12_from_q123_front_down*sin_q4_front_down_up
-            )
-            direction_of_axis_a6_front_down_up = (
-                offset_a6 + arctan2(r21_from_q1234_front_down_up + 0.0, r22_from_q1234_front_down_up + 0.0)/DEGREE
-            )
-        # A4: its turn
-        axis_a4_front_up_down = offset_a4 + arctan2(sin_q4_front_up_down, cos_q4_front_up_down + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a4_front_up_down - open_a4 < 179.999999999:
-            axis_a4_front_up_down = nearest_period(axis_a4_front_up_down, open_a4)
-        r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
-        r21_from_q1234_front_up_down = (
-            -r21_from_q1_front*cos_q4_front_up_down - r11_from_q123_front_up*sin_q4_front_up_down
-        )
-        r12_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up
-        r22_from_q1234_front_up_down = (
-            -r22_from_q1_front*cos_q4_front_up_down - r12_from_q123_front_up*sin_q4_front_up_down
-        )
-        # A6: its turn
-        axis_a6_front_up_down = (
-            offset_a6 + arctan2(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down + 0.0)/DEGREE
-        )
-        if not -180.000000001 <= axis_a6_front_up_down - open_a6 < 179.999999999:
-            axis_a6_front_up_down = nearest_period(axis_a6_front_up_down, open_a6)
-        if radius_q4_front_up > 1e-11:
-            direction_of_axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
-            direction_of_axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
-        else:
-            direction_of_axis_a4_front_up_up = (
-                offset_a4 + arctan2(sin_q4_front_up_up + 0.0, cos_q4_front_up_up + 0.0)/DEGREE
-            )
-            r21_from_q1234_front_up_up = -r21_from_q1_front*cos_q4_front_up_up - r11_from_q123_front_up*sin_q4_front_up_up
-            r22_from_q1234_front_up_up = -r22_from_q1_front*cos_q4_front_up_up - r12_from_q123_front_up*sin_q4_front_up_up
-            direction_of_axis_a6_front_up_up = (
-                offset_a6 + arctan2(r21_from_q1234_front_up_up + 0.0, r22_from_q1234_front_up_up + 0.0)/DEGREE
-            )
-        r23_from_q123_front_down = -r13_from_q1_front*cos_q23_front_down - r33*sin_q23_front_down
-        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
-        # A5: its turn
-        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4_front_down, -r23_from_q123_front_down + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a5_front_down_down - open_a5 < 179.999999999:
-            axis_a5_front_down_down = nearest_period(axis_a5_front_down_down, open_a5)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down + 0.0)/DEGREE  # A2: its turn
+        axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
             axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down + 0.0)/DEGREE  # A3: its turn
+        axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
             axis_a1_front = nearest_period(axis_a1_front, open_a1)
-        r23_from_q123_front_up = -r13_from_q1_front*cos_q23_front_up - r33*sin_q23_front_up
-        # A5: its turn
-        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4_front_up, -r23_from_q123_front_up + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a5_front_up_down - open_a5 < 179.999999999:
-            axis_a5_front_up_down = nearest_period(axis_a5_front_up_down, open_a5)
-        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up + 0.0)/DEGREE  # A2: its turn
-        if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
-            axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
-        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up + 0.0)/DEGREE  # A3: its turn
-        if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
-            axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
-        axis_a4_front_down_up = direction_of_axis_a4_front_down_up  # A4: its turn
+        if radius_q4 > 1e-11:
+            direction_of_axis_a4 = 180.0 + axis_a4_front_down_down
+            direction_of_axis_a6 = 180.0 + axis_a6_front_down_down
+        else:
+            direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
+            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            direction_of_axis_a6 = (
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up + 0.0, minus_r22_from_q1234_up + 0.0)/DEGREE
+            )
+        axis_a4_front_down_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_front_down_up - open_a4 < 179.999999999:
             axis_a4_front_down_up = nearest_period(axis_a4_front_down_up, open_a4)
         axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
         if not -180.000000001 <= axis_a5_front_down_up - open_a5 < 179.999999999:
             axis_a5_front_down_up = nearest_period(axis_a5_front_down_up, open_a5)
-        axis_a6_front_down_up = direction_of_axis_a6_front_down_up  # A6: its turn
+        axis_a6_front_down_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_front_down_up - open_a6 < 179.999999999:
             axis_a6_front_down_up = nearest_period(axis_a6_front_down_up, open_a6)
-        axis_a4_front_up_up = direction_of_axis_a4_front_up_up  # A4: its turn
+        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q23 = angle_q2_up + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        # q4: direction and distance of a point
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        if radius_q4 > 1e-11:
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = -r13_from_q123
+            direction_y_q4_down = r23_from_q1
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = cos(free_a4)
+            direction_y_q4_down = sin(free_a4)
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_up = direction_x_q4_down
+            direction_y_q4_up = direction_y_q4_down
+        # A4: its turn
+        axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
+        if not -180.000000001 <= axis_a4_front_up_down - open_a4 < 179.999999999:
+            axis_a4_front_up_down = nearest_period(axis_a4_front_up_down, open_a4)
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        if not -180.000000001 <= axis_a5_front_up_down - open_a5 < 179.999999999:
+            axis_a5_front_up_down = nearest_period(axis_a5_front_up_down, open_a5)
+        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        # A6: its turn
+        axis_a6_front_up_down = (
+            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down + 0.0)/DEGREE
+        )
+        if not -180.000000001 <= axis_a6_front_up_down - open_a6 < 179.999999999:
+            axis_a6_front_up_down = nearest_period(axis_a6_front_up_down, open_a6)
+        axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
+            axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
+        axis_a3_front_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
+            axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
+        if radius_q4 > 1e-11:
+            direction_of_axis_a4 = 180.0 + axis_a4_front_up_down
+            direction_of_axis_a6 = 180.0 + axis_a6_front_up_down
+        else:
+            direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
+            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            direction_of_axis_a6 = (
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up + 0.0, minus_r22_from_q1234_up + 0.0)/DEGREE
+            )
+        axis_a4_front_up_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_front_up_up - open_a4 < 179.999999999:
             axis_a4_front_up_up = nearest_period(axis_a4_front_up_up, open_a4)
         axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
         if not -180.000000001 <= axis_a5_front_up_up - open_a5 < 179.999999999:
             axis_a5_front_up_up = nearest_period(axis_a5_front_up_up, open_a5)
-        axis_a6_front_up_up = direction_of_axis_a6_front_up_up  # A6: its turn
+        axis_a6_front_up_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_front_up_up - open_a6 < 179.999999999:
             axis_a6_front_up_up = nearest_period(axis_a6_front_up_up, open_a6)
-        if sine_square_q3_front >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
+        if sine_square_q3 >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
             if axis_a2_front_down >= lowest_a2 and axis_a3_front_down >= lowest_a3 and axis_a2_front_down <= highest_a2 and axis_a3_front_down <= highest_a3:
                 # limits of A4, limits of A5, limits of A6
                 refusal_front_down_down = (
@@ -350,193 +321,164 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_front_up_up = 3.0  # limits of A4, limits of A5, limits of A6
         else:
             refusal_front_down_down = 3.0  # limits of A4, limits of A5, limits of A6
-            refusal_front_up_down = 3.0  # limits of A4, limits of A5, limits of A6
             refusal_front_down_up = 3.0  # limits of A4, limits of A5, limits of A6
+            refusal_front_up_down = 3.0  # limits of A4, limits of A5, limits of A6
             refusal_front_up_up = 3.0  # limits of A4, limits of A5, limits of A6
-        wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
-        reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
-        cos_swing_q3_back = (reach_back*reach_back - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
+        wrist_x_from_q1 = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3_back = (
-            (reach_back - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_back)
-            *(a2_plus_effective_q3 + reach_back)*(a2_plus_effective_q3 - reach_back)/swing_scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
+            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
-        sin_swing_q3_back_down = -(sqrt(sine_square_q3_back) if sine_square_q3_back > 0.0 else 0.0)
-        cos_q3_back_down = a3_by_effective_q3*cos_swing_q3_back - d4_by_effective_q3*sin_swing_q3_back_down
-        sin_q3_back_down = a3_by_effective_q3*sin_swing_q3_back_down + d4_by_effective_q3*cos_swing_q3_back
-        cos_q3_back_up = a3_by_effective_q3*cos_swing_q3_back + d4_by_effective_q3*sin_swing_q3_back_down
-        sin_q3_back_up = d4_by_effective_q3*cos_swing_q3_back - a3_by_effective_q3*sin_swing_q3_back_down
-        if reach_back > machine_scale_times_free_angle:
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = sqrt(length_q2_squared_back_down) if length_q2_squared_back_down > 0.0 else 1.0
-            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
-            sin_q2_back_down = across_q2_back_down/length_q2_back_down
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = sqrt(length_q2_squared_back_up) if length_q2_squared_back_up > 0.0 else 1.0
-            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
-            sin_q2_back_up = across_q2_back_up/length_q2_back_up
+        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = effective_q3*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3*cos_swing_q3
+            angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
+            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
+            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_back_down = cos(free_a2)  # its reference where it is free
-            sin_q2_back_down = sin(free_a2)
-            cos_q2_back_up = cos_q2_back_down  # its reference where it is free
-            sin_q2_back_up = sin_q2_back_down
-        r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
-        sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
-        cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
-        r13_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down
-        r23_from_q1_back = r23*cos_q1_back - r13*sin_q1_back
+            angle_q2_down = free_a2
+            angle_q2_up = free_a2
+        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        angle_q23 = angle_q2_down + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        r23_from_q1 = r23*cos_q1_back - r13*sin_q1_back
         # q4: direction and distance of a point
-        radius_q4_back_down = sqrt(
-            r13_from_q123_back_down*r13_from_q123_back_down + r23_from_q1_back*r23_from_q1_back
-        )
-        if radius_q4_back_down > 1e-11:
-            cos_q4_back_down_down = -r13_from_q123_back_down/radius_q4_back_down  # its reference where it is free
-            sin_q4_back_down_down = r23_from_q1_back/radius_q4_back_down
-            cos_q4_back_down_up = -cos_q4_back_down_down  # its reference where it is free
-            sin_q4_back_down_up = -sin_q4_back_down_down
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        if radius_q4 > 1e-11:
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = -r13_from_q123
+            direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4_back_down_down = cos(free_a4)  # its reference where it is free
-            sin_q4_back_down_down = sin(free_a4)
-            cos_q4_back_down_up = cos_q4_back_down_down  # its reference where it is free
-            sin_q4_back_down_up = sin_q4_back_down_down
-        sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up
-        cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up
-        r13_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up
-        # q4: direction and distance of a point
-        radius_q4_back_up = sqrt(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
-        if radius_q4_back_up > 1e-11:
-            cos_q4_back_up_down = -r13_from_q123_back_up/radius_q4_back_up  # its reference where it is free
-            sin_q4_back_up_down = r23_from_q1_back/radius_q4_back_up
-            cos_q4_back_up_up = -cos_q4_back_up_down  # its reference where it is free
-            sin_q4_back_up_up = -sin_q4_back_up_down
-        else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4_back_up_down = cos(free_a4)  # its reference where it is free
-            sin_q4_back_up_down = sin(free_a4)
-            cos_q4_back_up_up = cos_q4_back_up_down  # its reference where it is free
-            sin_q4_back_up_up = sin_q4_back_up_down
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = cos(free_a4)
+            direction_y_q4_down = sin(free_a4)
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_up = direction_x_q4_down
+            direction_y_q4_up = direction_y_q4_down
         # A4: its turn
-        axis_a4_back_down_down = offset_a4 + arctan2(sin_q4_back_down_down, cos_q4_back_down_down + 0.0)/DEGREE
+        axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
         if not -180.000000001 <= axis_a4_back_down_down - open_a4 < 179.999999999:
             axis_a4_back_down_down = nearest_period(axis_a4_back_down_down, open_a4)
-        r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
-        r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
-        r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
-        r21_from_q1234_back_down_down = (
-            -r21_from_q1_back*cos_q4_back_down_down - r11_from_q123_back_down*sin_q4_back_down_down
-        )
-        r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back
-        r12_from_q1_back = r12*cos_q1_back + r22*sin_q1_back
-        r12_from_q123_back_down = r32*cos_q23_back_down - r12_from_q1_back*sin_q23_back_down
-        r22_from_q1234_back_down_down = (
-            -r22_from_q1_back*cos_q4_back_down_down - r12_from_q123_back_down*sin_q4_back_down_down
-        )
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        if not -180.000000001 <= axis_a5_back_down_down - open_a5 < 179.999999999:
+            axis_a5_back_down_down = nearest_period(axis_a5_back_down_down, open_a5)
+        r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
+        r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
+        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
+        r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
+        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
         axis_a6_back_down_down = (
-            offset_a6 + arctan2(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down + 0.0)/DEGREE
+            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down + 0.0)/DEGREE
         )
         if not -180.000000001 <= axis_a6_back_down_down - open_a6 < 179.999999999:
             axis_a6_back_down_down = nearest_period(axis_a6_back_down_down, open_a6)
-        if radius_q4_back_down > 1e-11:
-            direction_of_axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
-            direction_of_axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
-        else:
-            direction_of_axis_a4_back_down_up = (
-                offset_a4 + arctan2(sin_q4_back_down_up + 0.0, cos_q4_back_down_up + 0.0)/DEGREE
-            )
-            r21_from_q1234_back_down_up = (
-                -r21_from_q1_back*cos_q4_back_down_up - r11_from_q123_back_down*sin_q4_back_down_up
-            )
-            r22_from_q1234_back_down_up = (
-                -r22_from_q1_back*cos_q4_back_down_up - r12_from_q123_back_down*sin_q4_back_down_up
-            )
-            direction_of_axis_a6_back_down_up = (
-                offset_a6 + arctan2(r21_from_q1234_back_down_up + 0.0, r22_from_q1234_back_down_up + 0.0)/DEGREE
-            )
-        # A4: its turn
-        axis_a4_back_up_down = offset_a4 + arctan2(sin_q4_back_up_down, cos_q4_back_up_down + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a4_back_up_down - open_a4 < 179.999999999:
-            axis_a4_back_up_down = nearest_period(axis_a4_back_up_down, open_a4)
-        r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
-        r21_from_q1234_back_up_down = (
-            -r21_from_q1_back*cos_q4_back_up_down - r11_from_q123_back_up*sin_q4_back_up_down
-        )
-        r12_from_q123_back_up = r32*cos_q23_back_up - r12_from_q1_back*sin_q23_back_up
-        r22_from_q1234_back_up_down = (
-            -r22_from_q1_back*cos_q4_back_up_down - r12_from_q123_back_up*sin_q4_back_up_down
-        )
-        # A6: its turn
-        axis_a6_back_up_down = (
-            offset_a6 + arctan2(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down + 0.0)/DEGREE
-        )
-        if not -180.000000001 <= axis_a6_back_up_down - open_a6 < 179.999999999:
-            axis_a6_back_up_down = nearest_period(axis_a6_back_up_down, open_a6)
-        if radius_q4_back_up > 1e-11:
-            direction_of_axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
-            direction_of_axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
-        else:
-            direction_of_axis_a4_back_up_up = offset_a4 + arctan2(sin_q4_back_up_up + 0.0, cos_q4_back_up_up + 0.0)/DEGREE
-            r21_from_q1234_back_up_up = -r21_from_q1_back*cos_q4_back_up_up - r11_from_q123_back_up*sin_q4_back_up_up
-            r22_from_q1234_back_up_up = -r22_from_q1_back*cos_q4_back_up_up - r12_from_q123_back_up*sin_q4_back_up_up
-            direction_of_axis_a6_back_up_up = (
-                offset_a6 + arctan2(r21_from_q1234_back_up_up + 0.0, r22_from_q1234_back_up_up + 0.0)/DEGREE
-            )
-        r23_from_q123_back_down = -r13_from_q1_back*cos_q23_back_down - r33*sin_q23_back_down
-        # A5: its turn
-        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4_back_down, -r23_from_q123_back_down + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a5_back_down_down - open_a5 < 179.999999999:
-            axis_a5_back_down_down = nearest_period(axis_a5_back_down_down, open_a5)
-        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down + 0.0)/DEGREE  # A2: its turn
+        axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
             axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
-        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down + 0.0)/DEGREE  # A3: its turn
+        axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
             axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_back - open_a1 < 179.999999999:
             axis_a1_back = nearest_period(axis_a1_back, open_a1)
-        r23_from_q123_back_up = -r13_from_q1_back*cos_q23_back_up - r33*sin_q23_back_up
-        # A5: its turn
-        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4_back_up, -r23_from_q123_back_up + 0.0)/DEGREE
-        if not -180.000000001 <= axis_a5_back_up_down - open_a5 < 179.999999999:
-            axis_a5_back_up_down = nearest_period(axis_a5_back_up_down, open_a5)
-        axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up + 0.0)/DEGREE  # A2: its turn
-        if not -180.000000001 <= axis_a2_back_up - open_a2 < 179.999999999:
-            axis_a2_back_up = nearest_period(axis_a2_back_up, open_a2)
-        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up + 0.0)/DEGREE  # A3: its turn
-        if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
-            axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
-        axis_a4_back_down_up = direction_of_axis_a4_back_down_up  # A4: its turn
+        if radius_q4 > 1e-11:
+            direction_of_axis_a4 = 180.0 + axis_a4_back_down_down
+            direction_of_axis_a6 = 180.0 + axis_a6_back_down_down
+        else:
+            direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
+            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            direction_of_axis_a6 = (
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up + 0.0, minus_r22_from_q1234_up + 0.0)/DEGREE
+            )
+        axis_a4_back_down_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_back_down_up - open_a4 < 179.999999999:
             axis_a4_back_down_up = nearest_period(axis_a4_back_down_up, open_a4)
         axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
         if not -180.000000001 <= axis_a5_back_down_up - open_a5 < 179.999999999:
             axis_a5_back_down_up = nearest_period(axis_a5_back_down_up, open_a5)
-        axis_a6_back_down_up = direction_of_axis_a6_back_down_up  # A6: its turn
+        axis_a6_back_down_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_back_down_up - open_a6 < 179.999999999:
             axis_a6_back_down_up = nearest_period(axis_a6_back_down_up, open_a6)
-        axis_a4_back_up_up = direction_of_axis_a4_back_up_up  # A4: its turn
+        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q23 = angle_q2_up + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        # q4: direction and distance of a point
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        if radius_q4 > 1e-11:
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = -r13_from_q123
+            direction_y_q4_down = r23_from_q1
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = cos(free_a4)
+            direction_y_q4_down = sin(free_a4)
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_up = direction_x_q4_down
+            direction_y_q4_up = direction_y_q4_down
+        # A4: its turn
+        axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down + 0.0)/DEGREE
+        if not -180.000000001 <= axis_a4_back_up_down - open_a4 < 179.999999999:
+            axis_a4_back_up_down = nearest_period(axis_a4_back_up_down, open_a4)
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        if not -180.000000001 <= axis_a5_back_up_down - open_a5 < 179.999999999:
+            axis_a5_back_up_down = nearest_period(axis_a5_back_up_down, open_a5)
+        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        # A6: its turn
+        axis_a6_back_up_down = (
+            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down + 0.0)/DEGREE
+        )
+        if not -180.000000001 <= axis_a6_back_up_down - open_a6 < 179.999999999:
+            axis_a6_back_up_down = nearest_period(axis_a6_back_up_down, open_a6)
+        axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_back_up - open_a2 < 179.999999999:
+            axis_a2_back_up = nearest_period(axis_a2_back_up, open_a2)
+        axis_a3_back_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
+            axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
+        if radius_q4 > 1e-11:
+            direction_of_axis_a4 = 180.0 + axis_a4_back_up_down
+            direction_of_axis_a6 = 180.0 + axis_a6_back_up_down
+        else:
+            direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
+            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            direction_of_axis_a6 = (
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up + 0.0, minus_r22_from_q1234_up + 0.0)/DEGREE
+            )
+        axis_a4_back_up_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_back_up_up - open_a4 < 179.999999999:
             axis_a4_back_up_up = nearest_period(axis_a4_back_up_up, open_a4)
         axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: its turn
         if not -180.000000001 <= axis_a5_back_up_up - open_a5 < 179.999999999:
             axis_a5_back_up_up = nearest_period(axis_a5_back_up_up, open_a5)
-        axis_a6_back_up_up = direction_of_axis_a6_back_up_up  # A6: its turn
+        axis_a6_back_up_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_back_up_up - open_a6 < 179.999999999:
             axis_a6_back_up_up = nearest_period(axis_a6_back_up_up, open_a6)
-        if sine_square_q3_back >= -1e-12 and axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1:
+        if sine_square_q3 >= -1e-12 and axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1:
             if axis_a2_back_down >= lowest_a2 and axis_a3_back_down >= lowest_a3 and axis_a2_back_down <= highest_a2 and axis_a3_back_down <= highest_a3:
                 # limits of A4, limits of A5, limits of A6
                 refusal_back_down_down = (
@@ -579,8 +521,8 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_back_up_up = 3.0  # limits of A4, limits of A5, limits of A6
         else:
             refusal_back_down_down = 3.0  # limits of A4, limits of A5, limits of A6
-            refusal_back_up_down = 3.0  # limits of A4, limits of A5, limits of A6
             refusal_back_down_up = 3.0  # limits of A4, limits of A5, limits of A6
+            refusal_back_up_down = 3.0  # limits of A4, limits of A5, limits of A6
             refusal_back_up_up = 3.0  # limits of A4, limits of A5, limits of A6
         return (
             (
@@ -663,305 +605,255 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_q1 >= -1e-12):
             return 8*(None,)
         if distance_q1 > machine_scale_times_free_angle:
+            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
+            sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
             cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
+            cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
             # its reference where it is free
-            cos_q1_front = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1
-            sin_q1_front = (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1
-            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
+            cos_q1_front = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
+            cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
+            sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
+            sin_q1_front = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
+            # its reference where it is free
+            cos_q1_back = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
+            sin_q1_back = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)  # its reference where it is free
             sin_q1_front = sin(free_a1)
             cos_q1_back = cos_q1_front  # its reference where it is free
             sin_q1_back = sin_q1_front
-        wrist_x_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
+        wrist_x_from_q1 = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3_front = (
-            (reach_front - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_front)
-            *(a2_plus_effective_q3 + reach_front)*(a2_plus_effective_q3 - reach_front)/swing_scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
+            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
-        cos_swing_q3_front = (reach_front*reach_front - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
-        cos_q3_front_down = a3_by_effective_q3*cos_swing_q3_front - d4_by_effective_q3*sin_swing_q3_front_down
-        sin_q3_front_down = a3_by_effective_q3*sin_swing_q3_front_down + d4_by_effective_q3*cos_swing_q3_front
-        cos_q3_front_up = a3_by_effective_q3*cos_swing_q3_front + d4_by_effective_q3*sin_swing_q3_front_down
-        sin_q3_front_up = d4_by_effective_q3*cos_swing_q3_front - a3_by_effective_q3*sin_swing_q3_front_down
-        if reach_front > machine_scale_times_free_angle:
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = sqrt(length_q2_squared_front_down) if length_q2_squared_front_down > 0.0 else 1.0
-            cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
-            sin_q2_front_down = across_q2_front_down/length_q2_front_down
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = sqrt(length_q2_squared_front_up) if length_q2_squared_front_up > 0.0 else 1.0
-            cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
-            sin_q2_front_up = across_q2_front_up/length_q2_front_up
+        refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN  # A1: its turn
+        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = effective_q3*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3*cos_swing_q3
+            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
+            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_front_down = cos(free_a2)  # its reference where it is free
-            sin_q2_front_down = sin(free_a2)
-            cos_q2_front_up = cos_q2_front_down  # its reference where it is free
-            sin_q2_front_up = sin_q2_front_down
-        r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
-        sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
-        cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
-        r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
-        r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
+            angle_q2_down = free_a2
+            angle_q2_up = free_a2
+        axis_a2_front_down = offset_a2 + angle_q2_down*RADIAN  # A2: its turn
+        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        axis_a3_front_down = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        r13_from_q1 = r13*cos_q1_front + r23*sin_q1_front
+        angle_q23 = angle_q2_down + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        r23_from_q1 = r23*cos_q1_front - r13*sin_q1_front
         # q4: direction and distance of a point
-        radius_q4_front_down = sqrt(
-            r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
-        )
-        if radius_q4_front_down > 1e-11:
-            cos_q4_front_down_down = -r13_from_q123_front_down/radius_q4_front_down  # its reference where it is free
-            sin_q4_front_down_down = r23_from_q1_front/radius_q4_front_down
-            cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
-            sin_q4_front_down_up = -sin_q4_front_down_down
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        if radius_q4 > 1e-11:
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = -r13_from_q123
+            direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4_front_down_down = cos(free_a4)  # its reference where it is free
-            sin_q4_front_down_down = sin(free_a4)
-            cos_q4_front_down_up = cos_q4_front_down_down  # its reference where it is free
-            sin_q4_front_down_up = sin_q4_front_down_down
-        wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
-        reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3_back = (
-            (reach_back - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach_back)
-            *(a2_plus_effective_q3 + reach_back)*(a2_plus_effective_q3 - reach_back)/swing_scale_q3_squared
-        )
-        cos_swing_q3_back = (reach_back*reach_back - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        sin_swing_q3_back_down = -(sqrt(sine_square_q3_back) if sine_square_q3_back > 0.0 else 0.0)
-        cos_q3_back_down = a3_by_effective_q3*cos_swing_q3_back - d4_by_effective_q3*sin_swing_q3_back_down
-        sin_q3_back_down = a3_by_effective_q3*sin_swing_q3_back_down + d4_by_effective_q3*cos_swing_q3_back
-        cos_q3_back_up = a3_by_effective_q3*cos_swing_q3_back + d4_by_effective_q3*sin_swing_q3_back_down
-        sin_q3_back_up = d4_by_effective_q3*cos_swing_q3_back - a3_by_effective_q3*sin_swing_q3_back_down
-        if reach_back > machine_scale_times_free_angle:
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = sqrt(length_q2_squared_back_down) if length_q2_squared_back_down > 0.0 else 1.0
-            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
-            sin_q2_back_down = across_q2_back_down/length_q2_back_down
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = sqrt(length_q2_squared_back_up) if length_q2_squared_back_up > 0.0 else 1.0
-            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
-            sin_q2_back_up = across_q2_back_up/length_q2_back_up
-        else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_back_down = cos(free_a2)  # its reference where it is free
-            sin_q2_back_down = sin(free_a2)
-            cos_q2_back_up = cos_q2_back_down  # its reference where it is free
-            sin_q2_back_up = sin_q2_back_down
-        r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
-        sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
-        cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
-        r13_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down
-        r23_from_q1_back = r23*cos_q1_back - r13*sin_q1_back
-        # q4: direction and distance of a point
-        radius_q4_back_down = sqrt(
-            r13_from_q123_back_down*r13_from_q123_back_down + r23_from_q1_back*r23_from_q1_back
-        )
-        if radius_q4_back_down > 1e-11:
-            cos_q4_back_down_down = -r13_from_q123_back_down/radius_q4_back_down  # its reference where it is free
-            sin_q4_back_down_down = r23_from_q1_back/radius_q4_back_down
-            cos_q4_back_down_up = -cos_q4_back_down_down  # its reference where it is free
-            sin_q4_back_down_up = -sin_q4_back_down_down
-        else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4_back_down_down = cos(free_a4)  # its reference where it is free
-            sin_q4_back_down_down = sin(free_a4)
-            cos_q4_back_down_up = cos_q4_back_down_down  # its reference where it is free
-            sin_q4_back_down_up = sin_q4_back_down_down
-        sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up
-        cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up
-        r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up
-        # q4: direction and distance of a point
-        radius_q4_front_up = sqrt(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
-        if radius_q4_front_up > 1e-11:
-            cos_q4_front_up_down = -r13_from_q123_front_up/radius_q4_front_up  # its reference where it is free
-            sin_q4_front_up_down = r23_from_q1_front/radius_q4_front_up
-            cos_q4_front_up_up = -cos_q4_front_up_down  # its reference where it is free
-            sin_q4_front_up_up = -sin_q4_front_up_down
-        else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4_front_up_down = cos(free_a4)  # its reference where it is free
-            sin_q4_front_up_down = sin(free_a4)
-            cos_q4_front_up_up = cos_q4_front_up_down  # its reference where it is free
-            sin_q4_front_up_up = sin_q4_front_up_down
-        sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up
-        cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up
-        r13_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up
-        # q4: direction and distance of a point
-        radius_q4_back_up = sqrt(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
-        if radius_q4_back_up > 1e-11:
-            cos_q4_back_up_down = -r13_from_q123_back_up/radius_q4_back_up  # its reference where it is free
-            sin_q4_back_up_down = r23_from_q1_back/radius_q4_back_up
-            cos_q4_back_up_up = -cos_q4_back_up_down  # its reference where it is free
-            sin_q4_back_up_up = -sin_q4_back_up_down
-        else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4_back_up_down = cos(free_a4)  # its reference where it is free
-            sin_q4_back_up_down = sin(free_a4)
-            cos_q4_back_up_up = cos_q4_back_up_down  # its reference where it is free
-            sin_q4_back_up_up = sin_q4_back_up_down
-        # A4: its turn
-        axis_a4_front_down_down = offset_a4 + arctan2(sin_q4_front_down_down, cos_q4_front_down_down)/DEGREE
-        r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
-        r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
-        r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down
-        r21_from_q1234_front_down_down = (
-            -r21_from_q1_front*cos_q4_front_down_down - r11_from_q123_front_down*sin_q4_front_down_down
-        )
-        r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front
-        r12_from_q1_front = r12*cos_q1_front + r22*sin_q1_front
-        r12_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down
-        r22_from_q1234_front_down_down = (
-            -r22_from_q1_front*cos_q4_front_down_down - r12_from_q123_front_down*sin_q4_front_down_down
-        )
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = cos(free_a4)
+            direction_y_q4_down = sin(free_a4)
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_up = direction_x_q4_down
+            direction_y_q4_up = direction_y_q4_down
+        axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
+        r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
+        r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
+        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
+        r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
+        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
         axis_a6_front_down_down = (
-            offset_a6 + arctan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down)/DEGREE
+            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down)*RADIAN
         )
-        if radius_q4_front_down > 1e-11:
+        if radius_q4 > 1e-11:
             direction_of_axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
             direction_of_axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
         else:
-            direction_of_axis_a4_front_down_up = offset_a4 + arctan2(sin_q4_front_down_up, cos_q4_front_down_up)/DEGREE
-            r21_from_q1234_front_down_up = (
-                -r21_from_q1_front*cos_q4_front_down_up - r11_from_q123_front_down*sin_q4_front_down_up
-            )
-            r22_from_q1234_front_down_up = (
-                -r22_from_q1_front*cos_q4_front_down_up - r12_from_q123_front_down*sin_q4_front_down_up
-            )
+            direction_of_axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
+            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_front_down_up = (
-                offset_a6 + arctan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up, minus_r22_from_q1234_up)*RADIAN
             )
-        # A4: its turn
-        axis_a4_back_down_down = offset_a4 + arctan2(sin_q4_back_down_down, cos_q4_back_down_down)/DEGREE
-        r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
-        r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
-        r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
-        r21_from_q1234_back_down_down = (
-            -r21_from_q1_back*cos_q4_back_down_down - r11_from_q123_back_down*sin_q4_back_down_down
-        )
-        r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back
-        r12_from_q1_back = r12*cos_q1_back + r22*sin_q1_back
-        r12_from_q123_back_down = r32*cos_q23_back_down - r12_from_q1_back*sin_q23_back_down
-        r22_from_q1234_back_down_down = (
-            -r22_from_q1_back*cos_q4_back_down_down - r12_from_q123_back_down*sin_q4_back_down_down
-        )
-        # A6: its turn
-        axis_a6_back_down_down = (
-            offset_a6 + arctan2(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down)/DEGREE
-        )
-        if radius_q4_back_down > 1e-11:
-            direction_of_axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
-            direction_of_axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
+        axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
+        axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
+        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        axis_a3_front_up = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        angle_q23 = angle_q2_up + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        # q4: direction and distance of a point
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        if radius_q4 > 1e-11:
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = -r13_from_q123
+            direction_y_q4_down = r23_from_q1
         else:
-            direction_of_axis_a4_back_down_up = offset_a4 + arctan2(sin_q4_back_down_up, cos_q4_back_down_up)/DEGREE
-            r21_from_q1234_back_down_up = (
-                -r21_from_q1_back*cos_q4_back_down_up - r11_from_q123_back_down*sin_q4_back_down_up
-            )
-            r22_from_q1234_back_down_up = (
-                -r22_from_q1_back*cos_q4_back_down_up - r12_from_q123_back_down*sin_q4_back_down_up
-            )
-            direction_of_axis_a6_back_down_up = (
-                offset_a6 + arctan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up)/DEGREE
-            )
-        axis_a4_front_up_down = offset_a4 + arctan2(sin_q4_front_up_down, cos_q4_front_up_down)/DEGREE  # A4: its turn
-        r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
-        r21_from_q1234_front_up_down = (
-            -r21_from_q1_front*cos_q4_front_up_down - r11_from_q123_front_up*sin_q4_front_up_down
-        )
-        r12_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up
-        r22_from_q1234_front_up_down = (
-            -r22_from_q1_front*cos_q4_front_up_down - r12_from_q123_front_up*sin_q4_front_up_down
-        )
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = cos(free_a4)
+            direction_y_q4_down = sin(free_a4)
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_up = direction_x_q4_down
+            direction_y_q4_up = direction_y_q4_down
+        axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
+        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_front_up_down = offset_a6 + arctan2(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down)/DEGREE
-        if radius_q4_front_up > 1e-11:
+        axis_a6_front_up_down = (
+            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down)*RADIAN
+        )
+        if radius_q4 > 1e-11:
             direction_of_axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
             direction_of_axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
         else:
-            direction_of_axis_a4_front_up_up = offset_a4 + arctan2(sin_q4_front_up_up, cos_q4_front_up_up)/DEGREE
-            r21_from_q1234_front_up_up = -r21_from_q1_front*cos_q4_front_up_up - r11_from_q123_front_up*sin_q4_front_up_up
-            r22_from_q1234_front_up_up = -r22_from_q1_front*cos_q4_front_up_up - r12_from_q123_front_up*sin_q4_front_up_up
+            direction_of_axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
+            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_front_up_up = (
-                offset_a6 + arctan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up, minus_r22_from_q1234_up)*RADIAN
             )
-        axis_a4_back_up_down = offset_a4 + arctan2(sin_q4_back_up_down, cos_q4_back_up_down)/DEGREE  # A4: its turn
-        r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
-        r21_from_q1234_back_up_down = (
-            -r21_from_q1_back*cos_q4_back_up_down - r11_from_q123_back_up*sin_q4_back_up_down
+        axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
+        wrist_x_from_q1 = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        # kept as a product
+        sine_square_q3 = (
+            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
+            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
-        r12_from_q123_back_up = r32*cos_q23_back_up - r12_from_q1_back*sin_q23_back_up
-        r22_from_q1234_back_up_down = (
-            -r22_from_q1_back*cos_q4_back_up_down - r12_from_q123_back_up*sin_q4_back_up_down
-        )
+        refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN  # A1: its turn
+        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = effective_q3*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3*cos_swing_q3
+            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
+            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+        else:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            angle_q2_down = free_a2
+            angle_q2_up = free_a2
+        axis_a2_back_down = offset_a2 + angle_q2_down*RADIAN  # A2: its turn
+        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        axis_a3_back_down = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
+        angle_q23 = angle_q2_down + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        r23_from_q1 = r23*cos_q1_back - r13*sin_q1_back
+        # q4: direction and distance of a point
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        if radius_q4 > 1e-11:
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = -r13_from_q123
+            direction_y_q4_down = r23_from_q1
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = cos(free_a4)
+            direction_y_q4_down = sin(free_a4)
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_up = direction_x_q4_down
+            direction_y_q4_up = direction_y_q4_down
+        axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
+        r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
+        r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
+        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
+        r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
+        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_back_up_down = offset_a6 + arctan2(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down)/DEGREE
-        if radius_q4_back_up > 1e-11:
+        axis_a6_back_down_down = (
+            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down)*RADIAN
+        )
+        if radius_q4 > 1e-11:
+            direction_of_axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
+            direction_of_axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
+        else:
+            direction_of_axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
+            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            direction_of_axis_a6_back_down_up = (
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up, minus_r22_from_q1234_up)*RADIAN
+            )
+        axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
+        axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
+        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        axis_a3_back_up = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        angle_q23 = angle_q2_up + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
+        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        # q4: direction and distance of a point
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        if radius_q4 > 1e-11:
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = -r13_from_q123
+            direction_y_q4_down = r23_from_q1
+        else:
+            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_down = cos(free_a4)
+            direction_y_q4_down = sin(free_a4)
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4_up = direction_x_q4_down
+            direction_y_q4_up = direction_y_q4_down
+        axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
+        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        # A6: its turn
+        axis_a6_back_up_down = (
+            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down)*RADIAN
+        )
+        if radius_q4 > 1e-11:
             direction_of_axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
             direction_of_axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
         else:
-            direction_of_axis_a4_back_up_up = offset_a4 + arctan2(sin_q4_back_up_up, cos_q4_back_up_up)/DEGREE
-            r21_from_q1234_back_up_up = -r21_from_q1_back*cos_q4_back_up_up - r11_from_q123_back_up*sin_q4_back_up_up
-            r22_from_q1234_back_up_up = -r22_from_q1_back*cos_q4_back_up_up - r12_from_q123_back_up*sin_q4_back_up_up
+            direction_of_axis_a4_back_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
+            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_back_up_up = (
-                offset_a6 + arctan2(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up, minus_r22_from_q1234_up)*RADIAN
             )
-        refusal_front = 0.0 if sine_square_q3_front >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)/DEGREE  # A1: its turn
-        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down)/DEGREE  # A2: its turn
-        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down)/DEGREE  # A3: its turn
-        r23_from_q123_front_down = -r13_from_q1_front*cos_q23_front_down - r33*sin_q23_front_down
-        # A5: its turn
-        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4_front_down, -r23_from_q123_front_down)/DEGREE
-        refusal_back = 0.0 if sine_square_q3_back >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)/DEGREE  # A1: its turn
-        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down)/DEGREE  # A2: its turn
-        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down)/DEGREE  # A3: its turn
-        r23_from_q123_back_down = -r13_from_q1_back*cos_q23_back_down - r33*sin_q23_back_down
-        # A5: its turn
-        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4_back_down, -r23_from_q123_back_down)/DEGREE
-        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up)/DEGREE  # A2: its turn
-        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up)/DEGREE  # A3: its turn
-        r23_from_q123_front_up = -r13_from_q1_front*cos_q23_front_up - r33*sin_q23_front_up
-        # A5: its turn
-        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4_front_up, -r23_from_q123_front_up)/DEGREE
-        axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up)/DEGREE  # A2: its turn
-        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up)/DEGREE  # A3: its turn
-        r23_from_q123_back_up = -r13_from_q1_back*cos_q23_back_up - r33*sin_q23_back_up
-        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4_back_up, -r23_from_q123_back_up)/DEGREE  # A5: its turn
-        axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
-        axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
-        axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
         axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: its turn
         return (
             (
@@ -1065,60 +957,51 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_q3 = a3_by_effective_q3*cos_swing_q3 - d4_by_effective_q3*sin_swing_q3
-        sin_q3 = a3_by_effective_q3*sin_swing_q3 + d4_by_effective_q3*cos_swing_q3
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = (
-                sqrt(across_q2*across_q2 + along_q2*along_q2)
-                if across_q2*across_q2 + along_q2*along_q2 > 0.0
-                else 1.0
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
+            arm_along_q2 = -effective_q3*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3*cos_swing_q3
+            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
+            angle_q2 = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(free_a2)  # its reference where it is free
-            sin_q2 = sin(free_a2)
+            angle_q2 = free_a2
+        axis_a2 = offset_a2 + angle_q2*RADIAN  # A2: its turn
+        angle_of_swing_q3 = arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        axis_a3 = offset_a3 + angle_q3*RADIAN  # A3: its turn
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
-        sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
-        cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
+        angle_q23 = angle_q2 + angle_q3
+        sin_q23 = sin(angle_q23)
+        cos_q23 = cos(angle_q23)
         r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         if radius_q4 > 1e-11:
-            along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
-            cos_q4 = along_q4/radius_q4  # its reference where it is free
-            across_q4 = r23_from_q1*sigma_hand
-            sin_q4 = across_q4/radius_q4
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4 = -r13_from_q123*sigma_hand
+            direction_y_q4 = r23_from_q1*sigma_hand
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4 = cos(free_a4)  # its reference where it is free
-            sin_q4 = sin(free_a4)
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3)/DEGREE  # A3: its turn
-        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4)/DEGREE  # A4: its turn
+            direction_x_q4 = cos(free_a4)  # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_y_q4 = sin(free_a4)
+        axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN  # A4: its turn
         q4_radius_of_q5 = radius_q4*sigma_hand
-        r23_from_q123 = -r13_from_q1*cos_q23 - r33*sin_q23
-        cos_q5 = -r23_from_q123  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5)/DEGREE  # A5: its turn
+        cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5)*RADIAN  # A5: its turn
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        r21_from_q1234 = -r21_from_q1*cos_q4 - r11_from_q123*sin_q4
+        minus_r21_from_q1234 = direction_x_q4*r21_from_q1 + direction_y_q4*r11_from_q123
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         r12_from_q1 = r12*cos_q1 + r22*sin_q1
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        r22_from_q1234 = -r22_from_q1*cos_q4 - r12_from_q123*sin_q4
-        axis_a6 = offset_a6 + arctan2(r21_from_q1234, r22_from_q1234)/DEGREE  # A6: its turn
+        minus_r22_from_q1234 = direction_x_q4*r22_from_q1 + direction_y_q4*r12_from_q123
+        axis_a6 = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     return Unrolled(every_branch, branches, branch)

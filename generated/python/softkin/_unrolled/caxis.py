@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, nearest_period, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -27,8 +27,9 @@ def unrolled(k: Constants) -> Unrolled:
         (ref_c,) = reference
         # numbers of reasonable size
         if not (
-            abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_c) <= 1e9
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9 and -1e9 <= ref_c <= 1e9
         ):
             return 1*(2.0,)
         # columns of length one, at right angles
@@ -47,11 +48,8 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return 1*(3.0,)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
-        axis_c = offset_c + arctan2(sin_heading, cos_heading + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c - open_c < 179.999999999:
             axis_c = nearest_period(axis_c, open_c)
         # limits of C
@@ -70,10 +68,7 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return 1*(None,)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        axis_c = offset_c + arctan2(sin_heading, cos_heading)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(heading_across, heading_along)*RADIAN  # C: its turn
         return (
             (axis_c,),
         )
@@ -87,10 +82,7 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return None
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        axis_c = offset_c + arctan2(sin_heading, cos_heading)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(heading_across, heading_along)*RADIAN  # C: its turn
         return (axis_c,)
 
     return Unrolled(every_branch, branches, branch)

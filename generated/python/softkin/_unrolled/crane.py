@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -34,7 +34,10 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         _, ref_theta, ref_phi = reference
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_phi) <= 1e9 and abs(ref_theta) <= 1e9):
+        if not (
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_phi <= 1e9
+            and -1e9 <= ref_theta <= 1e9
+        ):
             return 1*(2.0,)
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
@@ -43,27 +46,27 @@ def unrolled(k: Constants) -> Unrolled:
         if not (axis_r >= lowest_r and axis_r <= highest_r):
             return 1*(3.0,)
         if radius_theta > machine_scale_times_free_angle:
-            cos_theta = x/radius_theta  # its reference where it is free
-            sin_theta = y/radius_theta
+            direction_x_theta = x  # its reference where it is free
+            direction_y_theta = y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            cos_theta = cos(free_theta)  # its reference where it is free
-            sin_theta = sin(free_theta)
+            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_y_theta = sin(free_theta)
         open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
-        axis_theta = offset_theta + arctan2(sin_theta, cos_theta + 0.0)/DEGREE  # Theta: its turn
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
         if not -180.000000001 <= axis_theta - open_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, open_theta)
         # limits of Theta
         if not (axis_theta >= lowest_theta and axis_theta <= highest_theta):
             return 1*(3.0,)
         if radius_phi > machine_scale_times_free_angle:
-            cos_phi = z/radius_phi  # its reference where it is free
-            sin_phi = radius_theta/radius_phi
+            direction_x_phi = z  # its reference where it is free
+            direction_y_phi = radius_theta
         else:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
-            sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        axis_phi = offset_phi + arctan2(sin_phi + 0.0, cos_phi + 0.0)/DEGREE
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+        axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         # limits of Phi
         if not (axis_phi >= lowest_phi and axis_phi <= highest_phi):
             return 1*(3.0,)
@@ -76,24 +79,24 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         _, ref_theta, ref_phi = reference
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        axis_r = offset_r + radius_phi
         if radius_theta > machine_scale_times_free_angle:
-            cos_theta = x/radius_theta  # its reference where it is free
-            sin_theta = y/radius_theta
+            direction_x_theta = x  # its reference where it is free
+            direction_y_theta = y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            cos_theta = cos(free_theta)  # its reference where it is free
-            sin_theta = sin(free_theta)
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_y_theta = sin(free_theta)
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN  # Theta: its turn
         if radius_phi > machine_scale_times_free_angle:
-            cos_phi = z/radius_phi  # its reference where it is free
-            sin_phi = radius_theta/radius_phi
+            direction_x_phi = z  # its reference where it is free
+            direction_y_phi = radius_theta
         else:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
-            sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        axis_r = offset_r + radius_phi
-        axis_theta = offset_theta + arctan2(sin_theta, cos_theta)/DEGREE  # Theta: its turn
-        axis_phi = offset_phi + arctan2(sin_phi, cos_phi)/DEGREE
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+        axis_phi = offset_phi + arctan2(direction_y_phi, direction_x_phi)*RADIAN
         return (
             (axis_r, axis_theta, axis_phi),
         )
@@ -103,24 +106,24 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         _, ref_theta, ref_phi = reference
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        axis_r = offset_r + radius_phi
         if radius_theta > machine_scale_times_free_angle:
-            cos_theta = x/radius_theta  # its reference where it is free
-            sin_theta = y/radius_theta
+            direction_x_theta = x  # its reference where it is free
+            direction_y_theta = y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            cos_theta = cos(free_theta)  # its reference where it is free
-            sin_theta = sin(free_theta)
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_y_theta = sin(free_theta)
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN  # Theta: its turn
         if radius_phi > machine_scale_times_free_angle:
-            cos_phi = z/radius_phi  # its reference where it is free
-            sin_phi = radius_theta/radius_phi
+            direction_x_phi = z  # its reference where it is free
+            direction_y_phi = radius_theta
         else:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
-            sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        axis_r = offset_r + radius_phi
-        axis_theta = offset_theta + arctan2(sin_theta, cos_theta)/DEGREE  # Theta: its turn
-        axis_phi = offset_phi + arctan2(sin_phi, cos_phi)/DEGREE
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+        axis_phi = offset_phi + arctan2(direction_y_phi, direction_x_phi)*RADIAN
         return (axis_r, axis_theta, axis_phi)
 
     return Unrolled(every_branch, branches, branch)

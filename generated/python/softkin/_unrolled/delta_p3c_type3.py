@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, nearest_period, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -53,25 +53,31 @@ def unrolled(k: Constants) -> Unrolled:
     constant_part = base_radius_1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
     constant_part_2 = base_radius_1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
     inner_arm_1_times_shortest_link = 1e-9*inner_arm_1
+    inner_arm_1_squared = inner_arm_1*inner_arm_1
     inner_arm_1_times_2 = 2.0*inner_arm_1
-    constant_part_3 = inner_arm_1*inner_arm_1 - outer_arm_1*outer_arm_1
-    constant_part_4 = base_radius_2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
-    constant_part_5 = base_radius_2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
+    outer_arm_1_squared = outer_arm_1*outer_arm_1
+    constant_part_3 = base_radius_2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
+    constant_part_4 = base_radius_2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
     inner_arm_2_times_shortest_link = 1e-9*inner_arm_2
+    inner_arm_2_squared = inner_arm_2*inner_arm_2
     inner_arm_2_times_2 = 2.0*inner_arm_2
-    constant_part_6 = inner_arm_2*inner_arm_2 - outer_arm_2*outer_arm_2
-    constant_part_7 = base_radius_3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
-    constant_part_8 = base_radius_3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
+    outer_arm_2_squared = outer_arm_2*outer_arm_2
+    constant_part_5 = base_radius_3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
+    constant_part_6 = base_radius_3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
     inner_arm_3_times_shortest_link = 1e-9*inner_arm_3
+    inner_arm_3_squared = inner_arm_3*inner_arm_3
     inner_arm_3_times_2 = 2.0*inner_arm_3
-    constant_part_9 = inner_arm_3*inner_arm_3 - outer_arm_3*outer_arm_3
+    outer_arm_3_squared = outer_arm_3*outer_arm_3
     cos_azimuth_1_times_inner_arm_1 = inner_arm_1*cos_azimuth_1
     inner_arm_1_times_sin_azimuth_1 = inner_arm_1*sin_azimuth_1
     cos_azimuth_2_times_inner_arm_2 = inner_arm_2*cos_azimuth_2
     inner_arm_2_times_sin_azimuth_2 = inner_arm_2*sin_azimuth_2
     cos_azimuth_3_times_inner_arm_3 = inner_arm_3*cos_azimuth_3
     inner_arm_3_times_sin_azimuth_3 = inner_arm_3*sin_azimuth_3
-    constant_part_10 = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
+    constant_part_7 = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
+    constant_part_8 = inner_arm_1*inner_arm_1 - outer_arm_1*outer_arm_1
+    constant_part_9 = inner_arm_2*inner_arm_2 - outer_arm_2*outer_arm_2
+    constant_part_10 = inner_arm_3*inner_arm_3 - outer_arm_3*outer_arm_3
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -79,8 +85,8 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, ref_a3 = reference
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return 8*(2.0,)
         span_1_x = x - constant_part  # rod 1
@@ -90,152 +96,165 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return 8*(3.0,)
+        inner_arm_1_squared_plus_span_1_x_squared = inner_arm_1_squared + span_1_x*span_1_x
+        part_of_sine_square_a1 = inner_arm_1_squared_plus_span_1_x_squared + span_1_y*span_1_y
+        part_of_sine_square_a1_plus_z_squared = part_of_sine_square_a1 + z*z
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (divisor_a1*inner_arm_1_times_2 - constant_part_3 - span_1_x*span_1_x - span_1_y*span_1_y - z*z)
-            *(constant_part_3 + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
+            (outer_arm_1_squared + divisor_a1*inner_arm_1_times_2 - part_of_sine_square_a1_plus_z_squared)
+            *(part_of_sine_square_a1_plus_z_squared + divisor_a1*inner_arm_1_times_2 - outer_arm_1_squared)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(3.0,)
-        span_2_x = x - constant_part_4  # rod 2
-        span_2_y = y - constant_part_5  # rod 2
+        span_2_x = x - constant_part_3  # rod 2
+        span_2_y = y - constant_part_4  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return 8*(3.0,)
+        inner_arm_2_squared_plus_span_2_x_squared = inner_arm_2_squared + span_2_x*span_2_x
+        part_of_sine_square_a2 = inner_arm_2_squared_plus_span_2_x_squared + span_2_y*span_2_y
+        part_of_sine_square_a2_plus_z_squared = part_of_sine_square_a2 + z*z
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (divisor_a2*inner_arm_2_times_2 - constant_part_6 - span_2_x*span_2_x - span_2_y*span_2_y - z*z)
-            *(constant_part_6 + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
+            (outer_arm_2_squared + divisor_a2*inner_arm_2_times_2 - part_of_sine_square_a2_plus_z_squared)
+            *(part_of_sine_square_a2_plus_z_squared + divisor_a2*inner_arm_2_times_2 - outer_arm_2_squared)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(3.0,)
-        span_3_x = x - constant_part_7  # rod 3
-        span_3_y = y - constant_part_8  # rod 3
+        span_3_x = x - constant_part_5  # rod 3
+        span_3_y = y - constant_part_6  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return 8*(3.0,)
+        inner_arm_3_squared_plus_span_3_x_squared = inner_arm_3_squared + span_3_x*span_3_x
+        part_of_sine_square_a3 = inner_arm_3_squared_plus_span_3_x_squared + span_3_y*span_3_y
+        part_of_sine_square_a3_plus_z_squared = part_of_sine_square_a3 + z*z
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (divisor_a3*inner_arm_3_times_2 - constant_part_9 - span_3_x*span_3_x - span_3_y*span_3_y - z*z)
-            *(constant_part_9 + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
+            (outer_arm_3_squared + divisor_a3*inner_arm_3_times_2 - part_of_sine_square_a3_plus_z_squared)
+            *(part_of_sine_square_a3_plus_z_squared + divisor_a3*inner_arm_3_times_2 - outer_arm_3_squared)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 8*(3.0,)
-        cos_swing_a1 = (constant_part_3 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)/swing_scale_a1
-        sin_swing_a1_outward = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
-        cos_a1_outward = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1_outward/divisor_a1
-        sin_a1_outward = along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
-        cos_swing_a2 = (constant_part_6 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)/swing_scale_a2
-        sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        cos_a2_outward = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_outward = constant_part_4 + cos_a2_outward*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x_outward = x - pivot_2_x_outward
-        pivot_2_y_outward = constant_part_5 + inner_arm_2_times_sin_azimuth_2*cos_a2_outward  # rod 2
-        rod_2_y_outward = y - pivot_2_y_outward
-        sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
-        pivot_2_z_outward = -inner_arm_2*sin_a2_outward  # rod 2
-        rod_2_z_outward = z - pivot_2_z_outward
-        cos_swing_a3 = (constant_part_9 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)/swing_scale_a3
-        sin_swing_a3_outward = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
-        cos_a3_outward = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3_outward/divisor_a3
-        pivot_3_x_outward = constant_part_7 + cos_a3_outward*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x_outward = x - pivot_3_x_outward
-        pivot_3_y_outward = constant_part_8 + inner_arm_3_times_sin_azimuth_3*cos_a3_outward  # rod 3
-        rod_3_y_outward = y - pivot_3_y_outward
-        sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
-        pivot_3_z_outward = -inner_arm_3*sin_a3_outward  # rod 3
-        rod_3_z_outward = z - pivot_3_z_outward
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
+        cos_swing_a1 = (part_of_sine_square_a1_plus_z_squared - outer_arm_1_squared)/swing_scale_a1
+        along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
+        cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
+        cos_swing_a1_times_z_by_divisor_a1 = z*cos_swing_a1/divisor_a1
+        along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1*sin_swing_a1/divisor_a1
+        sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
+        cos_swing_a2 = (part_of_sine_square_a2_plus_z_squared - outer_arm_2_squared)/swing_scale_a2
+        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
+        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        rod_2_x_outward = x - pivot_2_x
+        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        rod_2_y_outward = y - pivot_2_y
+        cos_swing_a2_times_z_by_divisor_a2 = z*cos_swing_a2/divisor_a2
+        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
+        sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
+        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        rod_2_z_outward = z - pivot_2_z
+        sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
+        sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
+        cos_swing_a3 = (part_of_sine_square_a3_plus_z_squared - outer_arm_3_squared)/swing_scale_a3
+        along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
+        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
+        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        rod_3_x_outward = x - pivot_3_x
+        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        rod_3_y_outward = y - pivot_3_y
+        cos_swing_a3_times_z_by_divisor_a3 = z*cos_swing_a3/divisor_a3
+        along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
+        sin_a3 = -along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
+        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        rod_3_z_outward = z - pivot_3_z
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        axis_a3_outward = offset_a3 + arctan2(sin_a3_outward, cos_a3_outward + 0.0)/DEGREE  # A3: its turn
+        axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_outward - open_a3 < 179.999999999:
             axis_a3_outward = nearest_period(axis_a3_outward, open_a3)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward + 0.0)/DEGREE  # A2: its turn
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward + 0.0)/DEGREE  # A1: its turn
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
-        cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - z*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_inward = constant_part_4 + cos_a2_inward*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x_inward = x - pivot_2_x_inward
-        pivot_2_y_inward = constant_part_5 + inner_arm_2_times_sin_azimuth_2*cos_a2_inward  # rod 2
-        rod_2_y_inward = y - pivot_2_y_inward
-        sin_a2_inward = -along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
-        pivot_2_z_inward = -inner_arm_2*sin_a2_inward  # rod 2
-        rod_2_z_inward = z - pivot_2_z_inward
-        axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward + 0.0)/DEGREE  # A2: its turn
-        if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
-            axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
-        cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - z*sin_swing_a3_outward/divisor_a3
-        pivot_3_x_inward = constant_part_7 + cos_a3_inward*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x_inward = x - pivot_3_x_inward
-        pivot_3_y_inward = constant_part_8 + inner_arm_3_times_sin_azimuth_3*cos_a3_inward  # rod 3
-        rod_3_y_inward = y - pivot_3_y_inward
-        sin_a3_inward = -along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
-        pivot_3_z_inward = -inner_arm_3*sin_a3_inward  # rod 3
-        rod_3_z_inward = z - pivot_3_z_inward
-        axis_a3_inward = offset_a3 + arctan2(sin_a3_inward, cos_a3_inward + 0.0)/DEGREE  # A3: its turn
+        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 + sin_swing_a3_times_z_by_divisor_a3
+        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        rod_3_x_inward = x - pivot_3_x
+        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        rod_3_y_inward = y - pivot_3_y
+        sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
+        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        rod_3_z_inward = z - pivot_3_z
+        axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
             axis_a3_inward = nearest_period(axis_a3_inward, open_a3)
+        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 + sin_swing_a2_times_z_by_divisor_a2
+        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        rod_2_x_inward = x - pivot_2_x
+        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        rod_2_y_inward = y - pivot_2_y
+        sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
+        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        rod_2_z_inward = z - pivot_2_z
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
+            axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x_outward = constant_part + cos_a1_outward*cos_azimuth_1_times_inner_arm_1  # rod 1
-            rod_1_x_outward = x - pivot_1_x_outward
-            pivot_1_y_outward = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1_outward  # rod 1
-            rod_1_y_outward = y - pivot_1_y_outward
-            pivot_1_z_outward = -inner_arm_1*sin_a1_outward  # rod 1
-            rod_1_z_outward = z - pivot_1_z_outward
+            pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+            rod_1_x = x - pivot_1_x
+            pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+            rod_1_y = y - pivot_1_y
+            pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+            rod_1_z = z - pivot_1_z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_outward_outward_outward = (
-                        constant_part_10
+                    type2_rods_coplanar_outward_outward = (
+                        constant_part_7
                         *(
-                            rod_1_x_outward*rod_2_y_outward*rod_3_z_outward + rod_1_y_outward*rod_2_z_outward*rod_3_x_outward
-                            + rod_1_z_outward*rod_2_x_outward*rod_3_y_outward - rod_1_x_outward*rod_2_z_outward*rod_3_y_outward
-                            - rod_1_y_outward*rod_2_x_outward*rod_3_z_outward - rod_1_z_outward*rod_2_y_outward*rod_3_x_outward
+                            rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_y*rod_2_z_outward*rod_3_x_outward
+                            + rod_1_z*rod_2_x_outward*rod_3_y_outward - rod_1_x*rod_2_z_outward*rod_3_y_outward
+                            - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
                         )
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_outward_outward_outward_2 = (
-                        0.0
-                        if type2_rods_coplanar_outward_outward_outward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_outward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_outward_outward_inward = (
-                        constant_part_10
+                    type2_rods_coplanar_outward_inward = (
+                        constant_part_7
                         *(
-                            rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_y_outward*rod_2_z_outward*rod_3_x_inward
-                            + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
-                            - rod_1_y_outward*rod_2_x_outward*rod_3_z_inward - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward
+                            rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_y*rod_2_z_outward*rod_3_x_inward
+                            + rod_1_z*rod_2_x_outward*rod_3_y_inward - rod_1_x*rod_2_z_outward*rod_3_y_inward
+                            - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
                         )
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_outward_outward_inward_2 = (
-                        0.0
-                        if type2_rods_coplanar_outward_outward_inward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_outward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_inward_2 = 3.0
@@ -246,38 +265,30 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_outward_outward_inward_2 = 3.0
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_outward_inward_outward = (
-                        constant_part_10
+                    type2_rods_coplanar_inward_outward = (
+                        constant_part_7
                         *(
-                            rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_y_outward*rod_2_z_inward*rod_3_x_outward
-                            + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
-                            - rod_1_y_outward*rod_2_x_inward*rod_3_z_outward - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward
+                            rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_y*rod_2_z_inward*rod_3_x_outward
+                            + rod_1_z*rod_2_x_inward*rod_3_y_outward - rod_1_x*rod_2_z_inward*rod_3_y_outward
+                            - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
                         )
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_outward_inward_outward_2 = (
-                        0.0
-                        if type2_rods_coplanar_outward_inward_outward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_outward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_outward_inward_inward = (
-                        constant_part_10
+                    type2_rods_coplanar_inward_inward = (
+                        constant_part_7
                         *(
-                            rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_y_outward*rod_2_z_inward*rod_3_x_inward
-                            + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
-                            - rod_1_y_outward*rod_2_x_inward*rod_3_z_inward - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward
+                            rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_y*rod_2_z_inward*rod_3_x_inward
+                            + rod_1_z*rod_2_x_inward*rod_3_y_inward - rod_1_x*rod_2_z_inward*rod_3_y_inward
+                            - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
                         )
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_outward_inward_inward_2 = (
-                        0.0
-                        if type2_rods_coplanar_outward_inward_inward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_outward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_inward_2 = 3.0
@@ -290,57 +301,49 @@ def unrolled(k: Constants) -> Unrolled:
             # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_outward_outward_2 = 3.0
             # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_outward_inward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_outward_inward_2 = 3.0
             # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_outward_inward_outward_2 = 3.0
+            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_inward_inward_2 = 3.0
-        cos_a1_inward = along_a1*cos_swing_a1/divisor_a1 - z*sin_swing_a1_outward/divisor_a1
-        sin_a1_inward = -along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
-        axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward + 0.0)/DEGREE  # A1: its turn
+        cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 + sin_swing_a1_times_z_by_divisor_a1
+        sin_a1 = along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x_inward = constant_part + cos_a1_inward*cos_azimuth_1_times_inner_arm_1  # rod 1
-            rod_1_x_inward = x - pivot_1_x_inward
-            pivot_1_y_inward = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1_inward  # rod 1
-            rod_1_y_inward = y - pivot_1_y_inward
-            pivot_1_z_inward = -inner_arm_1*sin_a1_inward  # rod 1
-            rod_1_z_inward = z - pivot_1_z_inward
+            pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+            rod_1_x = x - pivot_1_x
+            pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+            rod_1_y = y - pivot_1_y
+            pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+            rod_1_z = z - pivot_1_z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_inward_outward_outward = (
-                        constant_part_10
+                    type2_rods_coplanar_outward_outward = (
+                        constant_part_7
                         *(
-                            rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_y_inward*rod_2_z_outward*rod_3_x_outward
-                            + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
-                            - rod_1_y_inward*rod_2_x_outward*rod_3_z_outward - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward
+                            rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_y*rod_2_z_outward*rod_3_x_outward
+                            + rod_1_z*rod_2_x_outward*rod_3_y_outward - rod_1_x*rod_2_z_outward*rod_3_y_outward
+                            - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
                         )
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_inward_outward_outward_2 = (
-                        0.0
-                        if type2_rods_coplanar_inward_outward_outward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_inward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_inward_outward_inward = (
-                        constant_part_10
+                    type2_rods_coplanar_outward_inward = (
+                        constant_part_7
                         *(
-                            rod_1_x_inward*rod_2_y_outward*rod_3_z_inward + rod_1_y_inward*rod_2_z_outward*rod_3_x_inward
-                            + rod_1_z_inward*rod_2_x_outward*rod_3_y_inward - rod_1_x_inward*rod_2_z_outward*rod_3_y_inward
-                            - rod_1_y_inward*rod_2_x_outward*rod_3_z_inward - rod_1_z_inward*rod_2_y_outward*rod_3_x_inward
+                            rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_y*rod_2_z_outward*rod_3_x_inward
+                            + rod_1_z*rod_2_x_outward*rod_3_y_inward - rod_1_x*rod_2_z_outward*rod_3_y_inward
+                            - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
                         )
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_inward_outward_inward_2 = (
-                        0.0
-                        if type2_rods_coplanar_inward_outward_inward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_inward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_inward_2 = 3.0
@@ -351,34 +354,30 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_inward_outward_inward_2 = 3.0
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_inward_inward_outward = (
-                        constant_part_10
+                    type2_rods_coplanar_inward_outward = (
+                        constant_part_7
                         *(
-                            rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_y_inward*rod_2_z_inward*rod_3_x_outward
-                            + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
-                            - rod_1_y_inward*rod_2_x_inward*rod_3_z_outward - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward
+                            rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_y*rod_2_z_inward*rod_3_x_outward
+                            + rod_1_z*rod_2_x_inward*rod_3_y_outward - rod_1_x*rod_2_z_inward*rod_3_y_outward
+                            - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
                         )
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_inward_inward_outward_2 = (
-                        0.0
-                        if type2_rods_coplanar_inward_inward_outward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_inward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_inward_inward_inward = (
-                        constant_part_10
+                    type2_rods_coplanar_inward_inward = (
+                        constant_part_7
                         *(
-                            rod_1_x_inward*rod_2_y_inward*rod_3_z_inward + rod_1_y_inward*rod_2_z_inward*rod_3_x_inward
-                            + rod_1_z_inward*rod_2_x_inward*rod_3_y_inward - rod_1_x_inward*rod_2_z_inward*rod_3_y_inward
-                            - rod_1_y_inward*rod_2_x_inward*rod_3_z_inward - rod_1_z_inward*rod_2_y_inward*rod_3_x_inward
+                            rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_y*rod_2_z_inward*rod_3_x_inward
+                            + rod_1_z*rod_2_x_inward*rod_3_y_inward - rod_1_x*rod_2_z_inward*rod_3_y_inward
+                            - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
                         )
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_inward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward_inward >= min_type2_margin else 3.0
+                    refusal_inward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_inward_2 = 3.0
@@ -391,9 +390,9 @@ def unrolled(k: Constants) -> Unrolled:
             # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_outward_outward_2 = 3.0
             # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_inward_inward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_outward_inward_2 = 3.0
+            # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_inward_inward_outward_2 = 3.0
             # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_inward_inward_2 = 3.0
         return (
@@ -449,209 +448,214 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return 8*(None,)
+        inner_arm_1_squared_plus_span_1_x_squared = inner_arm_1_squared + span_1_x*span_1_x
+        part_of_sine_square_a1 = inner_arm_1_squared_plus_span_1_x_squared + span_1_y*span_1_y
+        part_of_sine_square_a1_plus_z_squared = part_of_sine_square_a1 + z*z
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (divisor_a1*inner_arm_1_times_2 - constant_part_3 - span_1_x*span_1_x - span_1_y*span_1_y - z*z)
-            *(constant_part_3 + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
+            (outer_arm_1_squared + divisor_a1*inner_arm_1_times_2 - part_of_sine_square_a1_plus_z_squared)
+            *(part_of_sine_square_a1_plus_z_squared + divisor_a1*inner_arm_1_times_2 - outer_arm_1_squared)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(None,)
-        span_2_x = x - constant_part_4  # rod 2
-        span_2_y = y - constant_part_5  # rod 2
+        span_2_x = x - constant_part_3  # rod 2
+        span_2_y = y - constant_part_4  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return 8*(None,)
+        inner_arm_2_squared_plus_span_2_x_squared = inner_arm_2_squared + span_2_x*span_2_x
+        part_of_sine_square_a2 = inner_arm_2_squared_plus_span_2_x_squared + span_2_y*span_2_y
+        part_of_sine_square_a2_plus_z_squared = part_of_sine_square_a2 + z*z
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (divisor_a2*inner_arm_2_times_2 - constant_part_6 - span_2_x*span_2_x - span_2_y*span_2_y - z*z)
-            *(constant_part_6 + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
+            (outer_arm_2_squared + divisor_a2*inner_arm_2_times_2 - part_of_sine_square_a2_plus_z_squared)
+            *(part_of_sine_square_a2_plus_z_squared + divisor_a2*inner_arm_2_times_2 - outer_arm_2_squared)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(None,)
-        span_3_x = x - constant_part_7  # rod 3
-        span_3_y = y - constant_part_8  # rod 3
+        span_3_x = x - constant_part_5  # rod 3
+        span_3_y = y - constant_part_6  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return 8*(None,)
+        inner_arm_3_squared_plus_span_3_x_squared = inner_arm_3_squared + span_3_x*span_3_x
+        part_of_sine_square_a3 = inner_arm_3_squared_plus_span_3_x_squared + span_3_y*span_3_y
+        part_of_sine_square_a3_plus_z_squared = part_of_sine_square_a3 + z*z
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (divisor_a3*inner_arm_3_times_2 - constant_part_9 - span_3_x*span_3_x - span_3_y*span_3_y - z*z)
-            *(constant_part_9 + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
+            (outer_arm_3_squared + divisor_a3*inner_arm_3_times_2 - part_of_sine_square_a3_plus_z_squared)
+            *(part_of_sine_square_a3_plus_z_squared + divisor_a3*inner_arm_3_times_2 - outer_arm_3_squared)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 8*(None,)
-        cos_swing_a1 = (constant_part_3 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)/swing_scale_a1
-        sin_swing_a1_outward = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
-        cos_a1_outward = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1_outward/divisor_a1
-        pivot_1_x_outward = constant_part + cos_a1_outward*cos_azimuth_1_times_inner_arm_1  # rod 1
-        rod_1_x_outward = x - pivot_1_x_outward
-        pivot_1_y_outward = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1_outward  # rod 1
-        rod_1_y_outward = y - pivot_1_y_outward
-        sin_a1_outward = along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
-        pivot_1_z_outward = -inner_arm_1*sin_a1_outward  # rod 1
-        rod_1_z_outward = z - pivot_1_z_outward
-        cos_swing_a2 = (constant_part_6 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)/swing_scale_a2
-        sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        cos_a2_outward = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_outward = constant_part_4 + cos_a2_outward*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x_outward = x - pivot_2_x_outward
-        pivot_2_y_outward = constant_part_5 + inner_arm_2_times_sin_azimuth_2*cos_a2_outward  # rod 2
-        rod_2_y_outward = y - pivot_2_y_outward
-        sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
-        pivot_2_z_outward = -inner_arm_2*sin_a2_outward  # rod 2
-        rod_2_z_outward = z - pivot_2_z_outward
-        cos_swing_a3 = (constant_part_9 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)/swing_scale_a3
-        sin_swing_a3_outward = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
-        cos_a3_outward = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3_outward/divisor_a3
-        pivot_3_x_outward = constant_part_7 + cos_a3_outward*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x_outward = x - pivot_3_x_outward
-        pivot_3_y_outward = constant_part_8 + inner_arm_3_times_sin_azimuth_3*cos_a3_outward  # rod 3
-        rod_3_y_outward = y - pivot_3_y_outward
-        sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
-        pivot_3_z_outward = -inner_arm_3*sin_a3_outward  # rod 3
-        rod_3_z_outward = z - pivot_3_z_outward
-        type2_rods_coplanar_outward_outward_outward = (
-            constant_part_10
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
+        cos_swing_a1 = (part_of_sine_square_a1_plus_z_squared - outer_arm_1_squared)/swing_scale_a1
+        along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
+        cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
+        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        rod_1_x = x - pivot_1_x
+        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        rod_1_y = y - pivot_1_y
+        cos_swing_a1_times_z_by_divisor_a1 = z*cos_swing_a1/divisor_a1
+        along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1*sin_swing_a1/divisor_a1
+        sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
+        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        rod_1_z = z - pivot_1_z
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
+        cos_swing_a2 = (part_of_sine_square_a2_plus_z_squared - outer_arm_2_squared)/swing_scale_a2
+        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
+        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        rod_2_x_outward = x - pivot_2_x
+        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        rod_2_y_outward = y - pivot_2_y
+        cos_swing_a2_times_z_by_divisor_a2 = z*cos_swing_a2/divisor_a2
+        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
+        sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
+        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        rod_2_z_outward = z - pivot_2_z
+        sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
+        sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
+        cos_swing_a3 = (part_of_sine_square_a3_plus_z_squared - outer_arm_3_squared)/swing_scale_a3
+        along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
+        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
+        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        rod_3_x_outward = x - pivot_3_x
+        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        rod_3_y_outward = y - pivot_3_y
+        cos_swing_a3_times_z_by_divisor_a3 = z*cos_swing_a3/divisor_a3
+        along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
+        sin_a3 = -along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
+        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        rod_3_z_outward = z - pivot_3_z
+        type2_rods_coplanar = (
+            constant_part_7
             *(
-                rod_1_x_outward*rod_2_y_outward*rod_3_z_outward + rod_1_y_outward*rod_2_z_outward*rod_3_x_outward
-                + rod_1_z_outward*rod_2_x_outward*rod_3_y_outward - rod_1_x_outward*rod_2_z_outward*rod_3_y_outward
-                - rod_1_y_outward*rod_2_x_outward*rod_3_z_outward - rod_1_z_outward*rod_2_y_outward*rod_3_x_outward
+                rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_y*rod_2_z_outward*rod_3_x_outward
+                + rod_1_z*rod_2_x_outward*rod_3_y_outward - rod_1_x*rod_2_z_outward*rod_3_y_outward
+                - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_outward = (
-            0.0
-            if type2_rods_coplanar_outward_outward_outward >= min_type2_margin
-            else 3.0
-        )
-        axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward)/DEGREE  # A1: its turn
-        axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward)/DEGREE  # A2: its turn
-        axis_a3_outward = offset_a3 + arctan2(sin_a3_outward, cos_a3_outward)/DEGREE  # A3: its turn
-        cos_a1_inward = along_a1*cos_swing_a1/divisor_a1 - z*sin_swing_a1_outward/divisor_a1
-        pivot_1_x_inward = constant_part + cos_a1_inward*cos_azimuth_1_times_inner_arm_1  # rod 1
-        rod_1_x_inward = x - pivot_1_x_inward
-        pivot_1_y_inward = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1_inward  # rod 1
-        rod_1_y_inward = y - pivot_1_y_inward
-        sin_a1_inward = -along_a1*sin_swing_a1_outward/divisor_a1 - z*cos_swing_a1/divisor_a1
-        pivot_1_z_inward = -inner_arm_1*sin_a1_inward  # rod 1
-        rod_1_z_inward = z - pivot_1_z_inward
-        type2_rods_coplanar_inward_outward_outward = (
-            constant_part_10
+        refusal_outward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
+        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 + sin_swing_a3_times_z_by_divisor_a3
+        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        rod_3_x_inward = x - pivot_3_x
+        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        rod_3_y_inward = y - pivot_3_y
+        sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
+        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
+        rod_3_z_inward = z - pivot_3_z
+        type2_rods_coplanar = (
+            constant_part_7
             *(
-                rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_y_inward*rod_2_z_outward*rod_3_x_outward
-                + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
-                - rod_1_y_inward*rod_2_x_outward*rod_3_z_outward - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward
+                rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_y*rod_2_z_outward*rod_3_x_inward
+                + rod_1_z*rod_2_x_outward*rod_3_y_inward - rod_1_x*rod_2_z_outward*rod_3_y_inward
+                - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_outward = (
-            0.0
-            if type2_rods_coplanar_inward_outward_outward >= min_type2_margin
-            else 3.0
-        )
-        axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward)/DEGREE  # A1: its turn
-        cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - z*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_inward = constant_part_4 + cos_a2_inward*cos_azimuth_2_times_inner_arm_2  # rod 2
-        rod_2_x_inward = x - pivot_2_x_inward
-        pivot_2_y_inward = constant_part_5 + inner_arm_2_times_sin_azimuth_2*cos_a2_inward  # rod 2
-        rod_2_y_inward = y - pivot_2_y_inward
-        sin_a2_inward = -along_a2*sin_swing_a2_outward/divisor_a2 - z*cos_swing_a2/divisor_a2
-        pivot_2_z_inward = -inner_arm_2*sin_a2_inward  # rod 2
-        rod_2_z_inward = z - pivot_2_z_inward
-        type2_rods_coplanar_outward_inward_outward = (
-            constant_part_10
+        refusal_outward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
+        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 + sin_swing_a2_times_z_by_divisor_a2
+        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        rod_2_x_inward = x - pivot_2_x
+        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        rod_2_y_inward = y - pivot_2_y
+        sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
+        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
+        rod_2_z_inward = z - pivot_2_z
+        type2_rods_coplanar = (
+            constant_part_7
             *(
-                rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_y_outward*rod_2_z_inward*rod_3_x_outward
-                + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
-                - rod_1_y_outward*rod_2_x_inward*rod_3_z_outward - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward
+                rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_y*rod_2_z_inward*rod_3_x_outward
+                + rod_1_z*rod_2_x_inward*rod_3_y_outward - rod_1_x*rod_2_z_inward*rod_3_y_outward
+                - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_outward = (
-            0.0
-            if type2_rods_coplanar_outward_inward_outward >= min_type2_margin
-            else 3.0
-        )
-        axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward)/DEGREE  # A2: its turn
-        type2_rods_coplanar_inward_inward_outward = (
-            constant_part_10
+        refusal_outward_inward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        type2_rods_coplanar = (
+            constant_part_7
             *(
-                rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_y_inward*rod_2_z_inward*rod_3_x_outward
-                + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
-                - rod_1_y_inward*rod_2_x_inward*rod_3_z_outward - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward
+                rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_y*rod_2_z_inward*rod_3_x_inward
+                + rod_1_z*rod_2_x_inward*rod_3_y_inward - rod_1_x*rod_2_z_inward*rod_3_y_inward
+                - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_outward = 0.0 if type2_rods_coplanar_inward_inward_outward >= min_type2_margin else 3.0
-        cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - z*sin_swing_a3_outward/divisor_a3
-        pivot_3_x_inward = constant_part_7 + cos_a3_inward*cos_azimuth_3_times_inner_arm_3  # rod 3
-        rod_3_x_inward = x - pivot_3_x_inward
-        pivot_3_y_inward = constant_part_8 + inner_arm_3_times_sin_azimuth_3*cos_a3_inward  # rod 3
-        rod_3_y_inward = y - pivot_3_y_inward
-        sin_a3_inward = -along_a3*sin_swing_a3_outward/divisor_a3 - z*cos_swing_a3/divisor_a3
-        pivot_3_z_inward = -inner_arm_3*sin_a3_inward  # rod 3
-        rod_3_z_inward = z - pivot_3_z_inward
-        type2_rods_coplanar_outward_outward_inward = (
-            constant_part_10
+        refusal_outward_inward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 + sin_swing_a1_times_z_by_divisor_a1
+        pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
+        rod_1_x = x - pivot_1_x
+        pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
+        rod_1_y = y - pivot_1_y
+        sin_a1 = along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
+        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
+        rod_1_z = z - pivot_1_z
+        type2_rods_coplanar = (
+            constant_part_7
             *(
-                rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_y_outward*rod_2_z_outward*rod_3_x_inward
-                + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
-                - rod_1_y_outward*rod_2_x_outward*rod_3_z_inward - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward
+                rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_y*rod_2_z_outward*rod_3_x_outward
+                + rod_1_z*rod_2_x_outward*rod_3_y_outward - rod_1_x*rod_2_z_outward*rod_3_y_outward
+                - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_inward = (
-            0.0
-            if type2_rods_coplanar_outward_outward_inward >= min_type2_margin
-            else 3.0
-        )
-        axis_a3_inward = offset_a3 + arctan2(sin_a3_inward, cos_a3_inward)/DEGREE  # A3: its turn
-        type2_rods_coplanar_inward_outward_inward = (
-            constant_part_10
+        refusal_inward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        type2_rods_coplanar = (
+            constant_part_7
             *(
-                rod_1_x_inward*rod_2_y_outward*rod_3_z_inward + rod_1_y_inward*rod_2_z_outward*rod_3_x_inward
-                + rod_1_z_inward*rod_2_x_outward*rod_3_y_inward - rod_1_x_inward*rod_2_z_outward*rod_3_y_inward
-                - rod_1_y_inward*rod_2_x_outward*rod_3_z_inward - rod_1_z_inward*rod_2_y_outward*rod_3_x_inward
+                rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_y*rod_2_z_outward*rod_3_x_inward
+                + rod_1_z*rod_2_x_outward*rod_3_y_inward - rod_1_x*rod_2_z_outward*rod_3_y_inward
+                - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_inward = 0.0 if type2_rods_coplanar_inward_outward_inward >= min_type2_margin else 3.0
-        type2_rods_coplanar_outward_inward_inward = (
-            constant_part_10
+        refusal_inward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        type2_rods_coplanar = (
+            constant_part_7
             *(
-                rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_y_outward*rod_2_z_inward*rod_3_x_inward
-                + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
-                - rod_1_y_outward*rod_2_x_inward*rod_3_z_inward - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward
+                rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_y*rod_2_z_inward*rod_3_x_outward
+                + rod_1_z*rod_2_x_inward*rod_3_y_outward - rod_1_x*rod_2_z_inward*rod_3_y_outward
+                - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_inward = 0.0 if type2_rods_coplanar_outward_inward_inward >= min_type2_margin else 3.0
-        type2_rods_coplanar_inward_inward_inward = (
-            constant_part_10
+        refusal_inward_inward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        type2_rods_coplanar = (
+            constant_part_7
             *(
-                rod_1_x_inward*rod_2_y_inward*rod_3_z_inward + rod_1_y_inward*rod_2_z_inward*rod_3_x_inward
-                + rod_1_z_inward*rod_2_x_inward*rod_3_y_inward - rod_1_x_inward*rod_2_z_inward*rod_3_y_inward
-                - rod_1_y_inward*rod_2_x_inward*rod_3_z_inward - rod_1_z_inward*rod_2_y_inward*rod_3_x_inward
+                rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_y*rod_2_z_inward*rod_3_x_inward
+                + rod_1_z*rod_2_x_inward*rod_3_y_inward - rod_1_x*rod_2_z_inward*rod_3_y_inward
+                - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_inward = 0.0 if type2_rods_coplanar_inward_inward_inward >= min_type2_margin else 3.0
+        refusal_inward_inward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
         return (
             ((axis_a1_outward, axis_a2_outward, axis_a3_outward) if refusal_outward_outward_outward == 0.0 else None),
             ((axis_a1_inward, axis_a2_outward, axis_a3_outward) if refusal_inward_outward_outward == 0.0 else None),
@@ -678,15 +682,15 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (divisor_a1*inner_arm_1_times_2 - constant_part_3 - span_1_x*span_1_x - span_1_y*span_1_y - z*z)
-            *(constant_part_3 + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
+            (divisor_a1*inner_arm_1_times_2 - constant_part_8 - span_1_x*span_1_x - span_1_y*span_1_y - z*z)
+            *(constant_part_8 + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return None
-        span_2_x = x - constant_part_4  # rod 2
-        span_2_y = y - constant_part_5  # rod 2
+        span_2_x = x - constant_part_3  # rod 2
+        span_2_y = y - constant_part_4  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
         effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
@@ -696,15 +700,15 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (divisor_a2*inner_arm_2_times_2 - constant_part_6 - span_2_x*span_2_x - span_2_y*span_2_y - z*z)
-            *(constant_part_6 + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
+            (divisor_a2*inner_arm_2_times_2 - constant_part_9 - span_2_x*span_2_x - span_2_y*span_2_y - z*z)
+            *(constant_part_9 + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        span_3_x = x - constant_part_7  # rod 3
-        span_3_y = y - constant_part_8  # rod 3
+        span_3_x = x - constant_part_5  # rod 3
+        span_3_y = y - constant_part_6  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
         effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
@@ -714,14 +718,14 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (divisor_a3*inner_arm_3_times_2 - constant_part_9 - span_3_x*span_3_x - span_3_y*span_3_y - z*z)
-            *(constant_part_9 + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
+            (divisor_a3*inner_arm_3_times_2 - constant_part_10 - span_3_x*span_3_x - span_3_y*span_3_y - z*z)
+            *(constant_part_10 + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return None
-        cos_swing_a1 = (constant_part_3 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)/swing_scale_a1
+        cos_swing_a1 = (constant_part_8 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)/swing_scale_a1
         sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
         pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
@@ -731,28 +735,28 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        cos_swing_a2 = (constant_part_6 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)/swing_scale_a2
+        cos_swing_a2 = (constant_part_9 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)/swing_scale_a2
         sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
-        pivot_2_x = constant_part_4 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
+        pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = constant_part_5 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
+        pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        cos_swing_a3 = (constant_part_9 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)/swing_scale_a3
+        cos_swing_a3 = (constant_part_10 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)/swing_scale_a3
         sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
-        pivot_3_x = constant_part_7 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
+        pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = constant_part_8 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
+        pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - z*cos_swing_a3/divisor_a3
         pivot_3_z = -inner_arm_3*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
-            constant_part_10
+            constant_part_7
             *(
                 rod_1_x*rod_2_y*rod_3_z + rod_1_y*rod_2_z*rod_3_x + rod_1_z*rod_2_x*rod_3_y - rod_1_x*rod_2_z*rod_3_y
                 - rod_1_y*rod_2_x*rod_3_z - rod_1_z*rod_2_y*rod_3_x
@@ -761,9 +765,9 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)/DEGREE  # A3: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
         return (axis_a1, axis_a2, axis_a3)
 
     return Unrolled(every_branch, branches, branch)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, nearest_period, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -37,9 +37,9 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, ref_r = reference
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_r) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_r <= 1e9
         ):
             return 1*(2.0,)
         # columns of length one, at right angles
@@ -69,12 +69,9 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
             return 1*(3.0,)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        sin_r = direction_r*sin_heading
+        sin_r = direction_r*heading_across
         open_r = mid_r if single_r > 0.0 else ref_r  # R: where its turn is open
-        axis_r = offset_r + arctan2(sin_r, cos_heading + 0.0)/DEGREE  # R: its turn
+        axis_r = offset_r + arctan2(sin_r, heading_along + 0.0)/DEGREE  # R: its turn
         if not -180.000000001 <= axis_r - open_r < 179.999999999:
             axis_r = nearest_period(axis_r, open_r)
         # limits of R
@@ -98,11 +95,8 @@ def unrolled(k: Constants) -> Unrolled:
             return 1*(None,)
         axis_x = offset_x + x
         axis_y = offset_y + y
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        sin_r = direction_r*sin_heading
-        axis_r = offset_r + arctan2(sin_r, cos_heading)/DEGREE  # R: its turn
+        sin_r = direction_r*heading_across
+        axis_r = offset_r + arctan2(sin_r, heading_along)*RADIAN  # R: its turn
         return (
             (axis_x, axis_y, axis_r),
         )
@@ -121,11 +115,8 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         axis_x = offset_x + x
         axis_y = offset_y + y
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        sin_r = direction_r*sin_heading
-        axis_r = offset_r + arctan2(sin_r, cos_heading)/DEGREE  # R: its turn
+        sin_r = direction_r*heading_across
+        axis_r = offset_r + arctan2(sin_r, heading_along)*RADIAN  # R: its turn
         return (axis_x, axis_y, axis_r)
 
     return Unrolled(every_branch, branches, branch)

@@ -119,9 +119,9 @@ def unrolled(k: Constants) -> Unrolled:
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9
         ):
             return 1*(2.0,)
         # columns of length one, at right angles
@@ -134,54 +134,90 @@ def unrolled(k: Constants) -> Unrolled:
         # a right-handed frame
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return 1*(2.0,)
-        span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1
-        span_1_y = y + platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23 - base_1_y  # rod 1
-        span_1_z = z + platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33 - base_1_z  # rod 1
+        platform_1_z_times_r13 = platform_1_z*r13
+        platform_1_x_times_r11_plus_platform_1_y_times_r12 = platform_1_x*r11 + platform_1_y*r12
+        span_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13 + x - base_1_x  # rod 1
+        platform_1_z_times_r23 = platform_1_z*r23
+        platform_1_x_times_r21_plus_platform_1_y_times_r22 = platform_1_x*r21 + platform_1_y*r22
+        span_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23 + y - base_1_y  # rod 1
+        platform_1_z_times_r33 = platform_1_z*r33
+        platform_1_x_times_r31_plus_platform_1_y_times_r32 = platform_1_x*r31 + platform_1_y*r32
+        span_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33 + z - base_1_z  # rod 1
         # l1: quadratic in the rod 1 equation
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link):
             return 1*(3.0,)
-        span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
-        span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
-        span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z  # rod 2
+        platform_2_z_times_r13 = platform_2_z*r13
+        platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
+        span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x  # rod 2
+        platform_2_z_times_r23 = platform_2_z*r23
+        platform_2_x_times_r21_plus_platform_2_y_times_r22 = platform_2_x*r21 + platform_2_y*r22
+        span_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23 + y - base_2_y  # rod 2
+        platform_2_z_times_r33 = platform_2_z*r33
+        platform_2_x_times_r31_plus_platform_2_y_times_r32 = platform_2_x*r31 + platform_2_y*r32
+        span_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33 + z - base_2_z  # rod 2
         # l2: quadratic in the rod 2 equation
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link):
             return 1*(3.0,)
-        span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
-        span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
-        span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z  # rod 3
+        platform_3_z_times_r13 = platform_3_z*r13
+        platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
+        span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x  # rod 3
+        platform_3_z_times_r23 = platform_3_z*r23
+        platform_3_x_times_r21_plus_platform_3_y_times_r22 = platform_3_x*r21 + platform_3_y*r22
+        span_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23 + y - base_3_y  # rod 3
+        platform_3_z_times_r33 = platform_3_z*r33
+        platform_3_x_times_r31_plus_platform_3_y_times_r32 = platform_3_x*r31 + platform_3_y*r32
+        span_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33 + z - base_3_z  # rod 3
         # l3: quadratic in the rod 3 equation
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link):
             return 1*(3.0,)
-        span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
-        span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
-        span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z  # rod 4
+        platform_4_z_times_r13 = platform_4_z*r13
+        platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
+        span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x  # rod 4
+        platform_4_z_times_r23 = platform_4_z*r23
+        platform_4_x_times_r21_plus_platform_4_y_times_r22 = platform_4_x*r21 + platform_4_y*r22
+        span_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23 + y - base_4_y  # rod 4
+        platform_4_z_times_r33 = platform_4_z*r33
+        platform_4_x_times_r31_plus_platform_4_y_times_r32 = platform_4_x*r31 + platform_4_y*r32
+        span_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33 + z - base_4_z  # rod 4
         # l4: quadratic in the rod 4 equation
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link):
             return 1*(3.0,)
-        span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
-        span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
-        span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z  # rod 5
+        platform_5_z_times_r13 = platform_5_z*r13
+        platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
+        span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x  # rod 5
+        platform_5_z_times_r23 = platform_5_z*r23
+        platform_5_x_times_r21_plus_platform_5_y_times_r22 = platform_5_x*r21 + platform_5_y*r22
+        span_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23 + y - base_5_y  # rod 5
+        platform_5_z_times_r33 = platform_5_z*r33
+        platform_5_x_times_r31_plus_platform_5_y_times_r32 = platform_5_x*r31 + platform_5_y*r32
+        span_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33 + z - base_5_z  # rod 5
         # l5: quadratic in the rod 5 equation
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link):
             return 1*(3.0,)
-        span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
-        span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
-        span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z  # rod 6
+        platform_6_z_times_r13 = platform_6_z*r13
+        platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
+        span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x  # rod 6
+        platform_6_z_times_r23 = platform_6_z*r23
+        platform_6_x_times_r21_plus_platform_6_y_times_r22 = platform_6_x*r21 + platform_6_y*r22
+        span_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23 + y - base_6_y  # rod 6
+        platform_6_z_times_r33 = platform_6_z*r33
+        platform_6_x_times_r31_plus_platform_6_y_times_r32 = platform_6_x*r31 + platform_6_y*r32
+        span_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33 + z - base_6_z  # rod 6
         # l6: quadratic in the rod 6 equation
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
@@ -284,40 +320,40 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 6: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_6 >= least_cos_plate):
             return 1*(3.0,)
-        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
-        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
+        arm_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23
+        arm_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33
         moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
+        arm_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13
         moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
         moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
-        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
+        arm_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23
+        arm_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33
         moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
+        arm_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13
         moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
         moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
-        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
+        arm_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23
+        arm_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33
         moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
+        arm_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13
         moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
         moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
-        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
+        arm_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23
+        arm_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33
         moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
+        arm_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13
         moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
         moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
-        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
+        arm_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23
+        arm_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33
         moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
+        arm_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13
         moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
         moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
-        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
+        arm_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23
+        arm_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33
         moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
+        arm_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13
         moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
         moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
         # margin of the platform
@@ -366,54 +402,90 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
-        span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1
-        span_1_y = y + platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23 - base_1_y  # rod 1
-        span_1_z = z + platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33 - base_1_z  # rod 1
+        platform_1_z_times_r13 = platform_1_z*r13
+        platform_1_x_times_r11_plus_platform_1_y_times_r12 = platform_1_x*r11 + platform_1_y*r12
+        span_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13 + x - base_1_x  # rod 1
+        platform_1_z_times_r23 = platform_1_z*r23
+        platform_1_x_times_r21_plus_platform_1_y_times_r22 = platform_1_x*r21 + platform_1_y*r22
+        span_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23 + y - base_1_y  # rod 1
+        platform_1_z_times_r33 = platform_1_z*r33
+        platform_1_x_times_r31_plus_platform_1_y_times_r32 = platform_1_x*r31 + platform_1_y*r32
+        span_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33 + z - base_1_z  # rod 1
         # l1: quadratic in the rod 1 equation
         root_square_l1 = span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link):
             return 1*(None,)
-        span_2_x = x + platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13 - base_2_x  # rod 2
-        span_2_y = y + platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23 - base_2_y  # rod 2
-        span_2_z = z + platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33 - base_2_z  # rod 2
+        platform_2_z_times_r13 = platform_2_z*r13
+        platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
+        span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x  # rod 2
+        platform_2_z_times_r23 = platform_2_z*r23
+        platform_2_x_times_r21_plus_platform_2_y_times_r22 = platform_2_x*r21 + platform_2_y*r22
+        span_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23 + y - base_2_y  # rod 2
+        platform_2_z_times_r33 = platform_2_z*r33
+        platform_2_x_times_r31_plus_platform_2_y_times_r32 = platform_2_x*r31 + platform_2_y*r32
+        span_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33 + z - base_2_z  # rod 2
         # l2: quadratic in the rod 2 equation
         root_square_l2 = span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link):
             return 1*(None,)
-        span_3_x = x + platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13 - base_3_x  # rod 3
-        span_3_y = y + platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23 - base_3_y  # rod 3
-        span_3_z = z + platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33 - base_3_z  # rod 3
+        platform_3_z_times_r13 = platform_3_z*r13
+        platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
+        span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x  # rod 3
+        platform_3_z_times_r23 = platform_3_z*r23
+        platform_3_x_times_r21_plus_platform_3_y_times_r22 = platform_3_x*r21 + platform_3_y*r22
+        span_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23 + y - base_3_y  # rod 3
+        platform_3_z_times_r33 = platform_3_z*r33
+        platform_3_x_times_r31_plus_platform_3_y_times_r32 = platform_3_x*r31 + platform_3_y*r32
+        span_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33 + z - base_3_z  # rod 3
         # l3: quadratic in the rod 3 equation
         root_square_l3 = span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link):
             return 1*(None,)
-        span_4_x = x + platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13 - base_4_x  # rod 4
-        span_4_y = y + platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23 - base_4_y  # rod 4
-        span_4_z = z + platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33 - base_4_z  # rod 4
+        platform_4_z_times_r13 = platform_4_z*r13
+        platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
+        span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x  # rod 4
+        platform_4_z_times_r23 = platform_4_z*r23
+        platform_4_x_times_r21_plus_platform_4_y_times_r22 = platform_4_x*r21 + platform_4_y*r22
+        span_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23 + y - base_4_y  # rod 4
+        platform_4_z_times_r33 = platform_4_z*r33
+        platform_4_x_times_r31_plus_platform_4_y_times_r32 = platform_4_x*r31 + platform_4_y*r32
+        span_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33 + z - base_4_z  # rod 4
         # l4: quadratic in the rod 4 equation
         root_square_l4 = span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link):
             return 1*(None,)
-        span_5_x = x + platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13 - base_5_x  # rod 5
-        span_5_y = y + platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23 - base_5_y  # rod 5
-        span_5_z = z + platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33 - base_5_z  # rod 5
+        platform_5_z_times_r13 = platform_5_z*r13
+        platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
+        span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x  # rod 5
+        platform_5_z_times_r23 = platform_5_z*r23
+        platform_5_x_times_r21_plus_platform_5_y_times_r22 = platform_5_x*r21 + platform_5_y*r22
+        span_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23 + y - base_5_y  # rod 5
+        platform_5_z_times_r33 = platform_5_z*r33
+        platform_5_x_times_r31_plus_platform_5_y_times_r32 = platform_5_x*r31 + platform_5_y*r32
+        span_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33 + z - base_5_z  # rod 5
         # l5: quadratic in the rod 5 equation
         root_square_l5 = span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link):
             return 1*(None,)
-        span_6_x = x + platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13 - base_6_x  # rod 6
-        span_6_y = y + platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23 - base_6_y  # rod 6
-        span_6_z = z + platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33 - base_6_z  # rod 6
+        platform_6_z_times_r13 = platform_6_z*r13
+        platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
+        span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x  # rod 6
+        platform_6_z_times_r23 = platform_6_z*r23
+        platform_6_x_times_r21_plus_platform_6_y_times_r22 = platform_6_x*r21 + platform_6_y*r22
+        span_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23 + y - base_6_y  # rod 6
+        platform_6_z_times_r33 = platform_6_z*r33
+        platform_6_x_times_r31_plus_platform_6_y_times_r32 = platform_6_x*r31 + platform_6_y*r32
+        span_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33 + z - base_6_z  # rod 6
         # l6: quadratic in the rod 6 equation
         root_square_l6 = span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
@@ -516,40 +588,40 @@ def unrolled(k: Constants) -> Unrolled:
         # leg 6: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_6 >= least_cos_plate):
             return 1*(None,)
-        arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
-        arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
+        arm_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23
+        arm_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33
         moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
-        arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
+        arm_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13
         moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
         moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
-        arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
-        arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
+        arm_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23
+        arm_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33
         moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
-        arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
+        arm_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13
         moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
         moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
-        arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
-        arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
+        arm_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23
+        arm_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33
         moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
-        arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
+        arm_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13
         moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
         moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
-        arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
-        arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
+        arm_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23
+        arm_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33
         moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
-        arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
+        arm_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13
         moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
         moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
-        arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
-        arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
+        arm_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23
+        arm_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33
         moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
-        arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
+        arm_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13
         moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
         moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
-        arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
-        arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
+        arm_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23
+        arm_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33
         moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
-        arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
+        arm_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13
         moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
         moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
         # margin of the platform

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, nearest_period, root, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, root, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -40,52 +40,65 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     constant_part = link_length_1*link_length_1 - link_length_2*link_length_2
+    constant_part_2 = link_length_1*link_length_3/link_length_2
+    constant_part_3 = link_length_3*swap_xy/link_length_2
     link_length_3_by_link_length_2 = link_length_3/link_length_2
-    constant_part_2 = link_length_3*swap_xy/link_length_2
     link_length_1_times_link_length_2 = link_length_1*link_length_2
     link_length_1_times_link_length_3 = link_length_1*link_length_3
     link_length_5_times_shortest_link = 1e-9*link_length_5
+    link_length_4_squared = link_length_4*link_length_4
+    link_length_1_squared = link_length_1*link_length_1
+    link_length_5_squared = link_length_5*link_length_5
+    constant_part_4 = link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+    constant_part_5 = 2.0*link_length_1*link_length_1*link_length_3/link_length_2
     link_length_5_times_2 = 2.0*link_length_5
-    constant_part_3 = 2.0*link_length_1*link_length_3/link_length_2
-    constant_part_4 = (
-        link_length_1*link_length_1 + link_length_5*link_length_5
-        + 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-        + link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
-        - link_length_4*link_length_4
-    )
+    constant_part_6 = 2.0*link_length_1*link_length_3/link_length_2
     link_length_2_squared = link_length_2*link_length_2
-    constant_part_5 = 2.0*link_length_2*link_length_2*link_length_5
-    constant_part_6 = 2.0*link_length_1*link_length_2*link_length_2
-    constant_part_7 = 2.0*link_length_1*link_length_2*link_length_3
-    constant_part_8 = (
+    constant_part_7 = link_length_1*link_length_1*link_length_2*link_length_2
+    constant_part_8 = link_length_1*link_length_1*link_length_3*link_length_3
+    constant_part_9 = link_length_2*link_length_2*link_length_5*link_length_5
+    constant_part_10 = link_length_2*link_length_2*link_length_4*link_length_4
+    constant_part_11 = 2.0*link_length_1*link_length_1*link_length_2*link_length_3
+    constant_part_12 = 2.0*link_length_2*link_length_2*link_length_5
+    constant_part_13 = 2.0*link_length_1*link_length_2*link_length_2
+    constant_part_14 = 2.0*link_length_1*link_length_2*link_length_3
+    constant_part_15 = link_length_2*link_length_2*link_length_2*link_length_2
+    link_length_2_times_swap_xy = link_length_2*swap_xy
+    swap_xy_times_2 = 2.0*swap_xy
+    swap_xy_squared_times_2 = 2.0*swap_xy*swap_xy
+    swap_xy_squared_times_4 = 4.0*swap_xy*swap_xy
+    swap_xy_times_4 = 4.0*swap_xy
+    constant_part_16 = assembly_sign*link_length_3/link_length_2
+    constant_part_17 = (
         link_length_1*link_length_1*link_length_2*link_length_2
         + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
         + link_length_1*link_length_1*link_length_3*link_length_3
         + link_length_2*link_length_2*link_length_5*link_length_5
         - link_length_2*link_length_2*link_length_4*link_length_4
     )
-    constant_part_9 = link_length_2*link_length_2*link_length_2*link_length_2
-    constant_part_10 = link_length_1*link_length_3/link_length_2
-    link_length_2_times_swap_xy = link_length_2*swap_xy
-    swap_xy_times_2 = 2.0*swap_xy
-    swap_xy_squared_times_2 = 2.0*swap_xy*swap_xy
-    swap_xy_squared_times_4 = 4.0*swap_xy*swap_xy
-    swap_xy_times_4 = 4.0*swap_xy
-    link_length_4_squared = link_length_4*link_length_4
-    constant_part_11 = assembly_sign*link_length_3/link_length_2
+    constant_part_18 = (
+        link_length_1*link_length_1 + link_length_5*link_length_5
+        + 2.0*link_length_1*link_length_1*link_length_3/link_length_2
+        + link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+        - link_length_4*link_length_4
+    )
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         ref_a1, ref_a2 = reference
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
+        if not (
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9
+        ):
             return 4*(2.0,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 4*(3.0,)
-        span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
-        span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
+        swap_xy_times_x_minus_swap_xy_times_y = swap_xy*x - swap_xy*y
+        span_upper_x = x - swap_xy_times_x_minus_swap_xy_times_y  # rod upper
+        span_upper_y = swap_xy_times_x_minus_swap_xy_times_y + y  # rod upper
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
@@ -102,127 +115,137 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 4*(3.0,)
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
-        sin_swing_a1_left = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
-        sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1_left/divisor_a1
-        cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1_left/divisor_a1
-        span_rear_x = constant_part_2*x - constant_part_2*y - link_length_3_by_link_length_2*x  # rod rear
-        along_a2_left = (
+        cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
+        sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
+        cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
+        part_of_span_rear_x = constant_part_3*x - constant_part_3*y
+        span_rear_x = part_of_span_rear_x - link_length_3_by_link_length_2*x  # rod rear
+        link_length_2_times_span_rear_x = link_length_2*span_rear_x
+        along_a2 = (
             (
-                link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1_left
-                - link_length_1_times_link_length_3*sin_a1_left
+                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
+                - link_length_1_times_link_length_3*sin_a1
             )
             /link_length_2
         )
-        span_rear_y = constant_part_2*y - constant_part_2*x - link_length_3_by_link_length_2*y  # rod rear
-        across_a2_left = (
+        span_rear_y = -part_of_span_rear_x - link_length_3_by_link_length_2*y  # rod rear
+        link_length_2_times_span_rear_y = link_length_2*span_rear_y
+        across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1_left + link_length_1_times_link_length_3*cos_a1_left
-                - link_length_2*span_rear_y
+                link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
+                - link_length_2_times_span_rear_y
             )
             /link_length_2
         )
-        # effective length that the angle turns
-        effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
-        divisor_a2_left = effective_a2_left if effective_a2_left > link_length_5_times_shortest_link else 1.0
-        swing_scale_a2_left = divisor_a2_left*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        cos_swing_a2_left = (
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        link_length_4_squared_minus_span_rear_x_squared = link_length_4_squared - span_rear_x*span_rear_x
+        part_of_cos_swing_a2 = link_length_1_squared - link_length_4_squared_minus_span_rear_x_squared
+        link_length_5_squared_plus_part_of_cos_swing_a2 = link_length_5_squared + part_of_cos_swing_a2
+        part_of_cos_swing_a2_left_left_2 = link_length_5_squared_plus_part_of_cos_swing_a2 + span_rear_y*span_rear_y
+        part_of_cos_swing_a2_left_left_3 = constant_part_4 + part_of_cos_swing_a2_left_left_2
+        part_of_cos_swing_a2_left_left_4 = constant_part_5 + part_of_cos_swing_a2_left_left_3
+        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
+        cos_swing_a2 = (
             (
-                constant_part_3*span_rear_y*cos_a1_left + constant_part_3*span_rear_x*sin_a1_left
-                + link_length_1_times_2*span_rear_y*cos_a1_left + link_length_1_times_2*span_rear_x*sin_a1_left
-                - constant_part_4 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
+                constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
+                + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
+                - part_of_cos_swing_a2_left_left_4
             )
-            /swing_scale_a2_left
+            /swing_scale_a2
         )
+        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        part_of_sine_square_a2 = constant_part_7 + link_length_2_squared*span_rear_x*span_rear_x
+        part_of_sine_square_a2_left_left_2 = constant_part_8 + part_of_sine_square_a2
+        part_of_sine_square_a2_left_left_3 = constant_part_9 + part_of_sine_square_a2_left_left_2
+        part_of_sine_square_a2_left_left_4 = (
+            part_of_sine_square_a2_left_left_3 + link_length_2_squared*span_rear_y*span_rear_y
+        )
+        part_of_sine_square_a2_left_left_5 = constant_part_10 - part_of_sine_square_a2_left_left_4
+        part_of_sine_square_a2_left_left_6 = constant_part_11 - part_of_sine_square_a2_left_left_5
         # kept as a product
-        sine_square_a2_left = (
+        sine_square_a2 = (
             (
-                constant_part_5*divisor_a2_left + constant_part_6*span_rear_y*cos_a1_left
-                + constant_part_6*span_rear_x*sin_a1_left + constant_part_7*span_rear_y*cos_a1_left
-                + constant_part_7*span_rear_x*sin_a1_left - constant_part_8
-                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
+                constant_part_12*divisor_a2 + constant_part_13*span_rear_y*cos_a1
+                + constant_part_13*span_rear_x*sin_a1 + constant_part_14*span_rear_y*cos_a1
+                + constant_part_14*span_rear_x*sin_a1 - part_of_sine_square_a2_left_left_6
             )
             *(
-                constant_part_8 + constant_part_5*divisor_a2_left + link_length_2_squared*span_rear_x*span_rear_x
-                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_6*span_rear_y*cos_a1_left
-                - constant_part_6*span_rear_x*sin_a1_left - constant_part_7*span_rear_y*cos_a1_left
-                - constant_part_7*span_rear_x*sin_a1_left
+                part_of_sine_square_a2_left_left_6 + constant_part_12*divisor_a2 - constant_part_13*span_rear_y*cos_a1
+                - constant_part_13*span_rear_x*sin_a1 - constant_part_14*span_rear_y*cos_a1
+                - constant_part_14*span_rear_x*sin_a1
             )
-            /(constant_part_9*swing_scale_a2_left*swing_scale_a2_left)
+            /(constant_part_15*swing_scale_a2*swing_scale_a2)
         )
-        sin_swing_a2_left_left = -(sqrt(sine_square_a2_left) if sine_square_a2_left > 0.0 else 0.0)
-        cos_a2_left_left = (
-            along_a2_left*cos_swing_a2_left/divisor_a2_left - across_a2_left*sin_swing_a2_left_left/divisor_a2_left
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
+        cos_a2_left = (
+            across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
         )
-        sin_a2_left_left = (
-            across_a2_left*cos_swing_a2_left/divisor_a2_left + along_a2_left*sin_swing_a2_left_left/divisor_a2_left
+        along_a2_times_sin_swing_a2_by_divisor_a2_left_right = along_a2*sin_swing_a2/divisor_a2
+        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
+        sin_a2_left = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left_left, cos_a2_left_left + 0.0)/DEGREE  # A2: its turn
+        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_left - open_a2 < 179.999999999:
             axis_a2_left_left = nearest_period(axis_a2_left_left, open_a2)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        cos_a2_left_right = (
-            across_a2_left*sin_swing_a2_left_left/divisor_a2_left + along_a2_left*cos_swing_a2_left/divisor_a2_left
+        cos_a2_right = (
+            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
-        sin_a2_left_right = (
-            across_a2_left*cos_swing_a2_left/divisor_a2_left - along_a2_left*sin_swing_a2_left_left/divisor_a2_left
+        sin_a2_right = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
-        axis_a2_left_right = offset_a2 + arctan2(sin_a2_left_right, cos_a2_left_right + 0.0)/DEGREE  # A2: its turn
+        axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_right - open_a2 < 179.999999999:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
-        if sine_square_a2_left >= -1e-12 and axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2_left > link_length_5_times_shortest_link:
-            pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
-            pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-            # rod rear
-            pivot_rear_x_left_left = (
-                constant_part_10*sin_a1_left + link_length_1*sin_a1_left - link_length_5*cos_a2_left_left
+        if sine_square_a2 >= -1e-12 and axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link:
+            pivot_upper_x = -link_length_1*sin_a1  # rod upper
+            pivot_upper_y = -link_length_1*cos_a1  # rod upper
+            part_of_pivot_rear_x = constant_part_2*sin_a1 + link_length_1*sin_a1
+            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
+            part_of_pivot_rear_y = constant_part_2*cos_a1 + link_length_1*cos_a1
+            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
+            part_of_centre_1_x = pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
+            centre_1_x = pivot_upper_x - part_of_centre_1_x
+            rod_1_x = x - centre_1_x
+            centre_1_y = part_of_centre_1_x + pivot_upper_y
+            rod_1_y = y - centre_1_y
+            part_of_centre_2_x = (
+                link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
-            # rod rear
-            pivot_rear_y_left_left = (
-                constant_part_10*cos_a1_left + link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
-            )
-            centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
-            rod_1_x_left = x - centre_1_x_left
-            centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
-            rod_1_y_left = y - centre_1_y_left
-            centre_2_x_left_left = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_x_left_left - link_length_2*pivot_rear_x_left_left
-                    - link_length_2_times_swap_xy*pivot_rear_y_left_left
-                )
-                /link_length_3
-            )
-            rod_2_x_left_left = x - centre_2_x_left_left
-            centre_2_y_left_left = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_y_left_left - link_length_2*pivot_rear_y_left_left
-                    - link_length_2_times_swap_xy*pivot_rear_x_left_left
-                )
-                /link_length_3
-            )
-            rod_2_y_left_left = y - centre_2_y_left_left
-            type2_arms_aligned_left_left = (
-                constant_part_11*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
+            centre_2_x_left = (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3
+            rod_2_x_left = x - centre_2_x_left
+            centre_2_y_left = (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3
+            rod_2_y_left = y - centre_2_y_left
+            type2_arms_aligned_left = (
+                constant_part_16*(rod_1_x*rod_2_y_left - rod_1_y*rod_2_x_left)
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x_left*pivot_upper_x_left*swap_xy_squared_times_2
-                        + pivot_upper_x_left*pivot_upper_y_left*swap_xy_times_4
-                        + pivot_upper_y_left*pivot_upper_y_left*swap_xy_squared_times_2
-                        - pivot_upper_x_left*pivot_upper_x_left*swap_xy_times_2
-                        - pivot_upper_x_left*pivot_upper_y_left*swap_xy_squared_times_4
-                        - pivot_upper_y_left*pivot_upper_y_left*swap_xy_times_2
+                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
+                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
+                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
+                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
+                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
+                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
                     )
                     *root(
-                        link_length_4_squared + pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy_squared_times_2
-                        + pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy_times_4
-                        + pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy_squared_times_2
-                        - pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy_times_2
-                        - pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy_squared_times_4
-                        - pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy_times_2
+                        link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
+                        + pivot_rear_x_left*pivot_rear_y_left*swap_xy_times_4
+                        + pivot_rear_y_left*pivot_rear_y_left*swap_xy_squared_times_2
+                        - pivot_rear_x_left*pivot_rear_x_left*swap_xy_times_2
+                        - pivot_rear_x_left*pivot_rear_y_left*swap_xy_squared_times_4
+                        - pivot_rear_y_left*pivot_rear_y_left*swap_xy_times_2
                     )
                 )
             )
@@ -230,52 +253,37 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_left = (
                 0.0
                 if (axis_a2_left_left >= lowest_a2) and (
-                    type2_arms_aligned_left_left >= min_type2_margin
+                    type2_arms_aligned_left >= min_type2_margin
                 ) and (axis_a2_left_left <= highest_a2)
                 else 3.0
             )
-            # rod rear
-            pivot_rear_x_left_right = (
-                constant_part_10*sin_a1_left + link_length_1*sin_a1_left - link_length_5*cos_a2_left_right
+            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_right  # rod rear
+            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_right  # rod rear
+            part_of_centre_2_x_left_right = (
+                link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
-            # rod rear
-            pivot_rear_y_left_right = (
-                constant_part_10*cos_a1_left + link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
-            )
-            centre_2_x_left_right = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_x_left_right - link_length_2*pivot_rear_x_left_right
-                    - link_length_2_times_swap_xy*pivot_rear_y_left_right
-                )
-                /link_length_3
-            )
-            rod_2_x_left_right = x - centre_2_x_left_right
-            centre_2_y_left_right = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_y_left_right - link_length_2*pivot_rear_y_left_right
-                    - link_length_2_times_swap_xy*pivot_rear_x_left_right
-                )
-                /link_length_3
-            )
-            rod_2_y_left_right = y - centre_2_y_left_right
-            type2_arms_aligned_left_right = (
-                constant_part_11*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
+            centre_2_x_right = (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3
+            rod_2_x_right = x - centre_2_x_right
+            centre_2_y_right = (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3
+            rod_2_y_right = y - centre_2_y_right
+            type2_arms_aligned_right = (
+                constant_part_16*(rod_1_x*rod_2_y_right - rod_1_y*rod_2_x_right)
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x_left*pivot_upper_x_left*swap_xy_squared_times_2
-                        + pivot_upper_x_left*pivot_upper_y_left*swap_xy_times_4
-                        + pivot_upper_y_left*pivot_upper_y_left*swap_xy_squared_times_2
-                        - pivot_upper_x_left*pivot_upper_x_left*swap_xy_times_2
-                        - pivot_upper_x_left*pivot_upper_y_left*swap_xy_squared_times_4
-                        - pivot_upper_y_left*pivot_upper_y_left*swap_xy_times_2
+                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
+                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
+                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
+                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
+                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
+                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
                     )
                     *root(
-                        link_length_4_squared + pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy_squared_times_2
-                        + pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy_times_4
-                        + pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy_squared_times_2
-                        - pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy_times_2
-                        - pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy_squared_times_4
-                        - pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy_times_2
+                        link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
+                        + pivot_rear_x_right*pivot_rear_y_right*swap_xy_times_4
+                        + pivot_rear_y_right*pivot_rear_y_right*swap_xy_squared_times_2
+                        - pivot_rear_x_right*pivot_rear_x_right*swap_xy_times_2
+                        - pivot_rear_x_right*pivot_rear_y_right*swap_xy_squared_times_4
+                        - pivot_rear_y_right*pivot_rear_y_right*swap_xy_times_2
                     )
                 )
             )
@@ -283,7 +291,7 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_right = (
                 0.0
                 if (axis_a2_left_right >= lowest_a2) and (
-                    type2_arms_aligned_left_right >= min_type2_margin
+                    type2_arms_aligned_right >= min_type2_margin
                 ) and (axis_a2_left_right <= highest_a2)
                 else 3.0
             )
@@ -292,125 +300,105 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_left = 3.0
             # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
             refusal_left_right = 3.0
-        sin_a1_right = span_upper_x*cos_swing_a1/divisor_a1 - span_upper_y*sin_swing_a1_left/divisor_a1
-        cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_left/divisor_a1
-        along_a2_right = (
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
+        along_a2 = (
             (
-                link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1_right
-                - link_length_1_times_link_length_3*sin_a1_right
+                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
+                - link_length_1_times_link_length_3*sin_a1
             )
             /link_length_2
         )
-        across_a2_right = (
+        across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1_right + link_length_1_times_link_length_3*cos_a1_right
-                - link_length_2*span_rear_y
+                link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
+                - link_length_2_times_span_rear_y
             )
             /link_length_2
         )
-        # effective length that the angle turns
-        effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
-        divisor_a2_right = effective_a2_right if effective_a2_right > link_length_5_times_shortest_link else 1.0
-        swing_scale_a2_right = divisor_a2_right*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        cos_swing_a2_right = (
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
+        cos_swing_a2 = (
             (
-                constant_part_3*span_rear_y*cos_a1_right + constant_part_3*span_rear_x*sin_a1_right
-                + link_length_1_times_2*span_rear_y*cos_a1_right + link_length_1_times_2*span_rear_x*sin_a1_right
-                - constant_part_4 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
+                constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
+                + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
+                - part_of_cos_swing_a2_left_left_4
             )
-            /swing_scale_a2_right
+            /swing_scale_a2
         )
+        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         # kept as a product
-        sine_square_a2_right = (
+        sine_square_a2 = (
             (
-                constant_part_5*divisor_a2_right + constant_part_6*span_rear_y*cos_a1_right
-                + constant_part_6*span_rear_x*sin_a1_right + constant_part_7*span_rear_y*cos_a1_right
-                + constant_part_7*span_rear_x*sin_a1_right - constant_part_8
-                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
+                constant_part_12*divisor_a2 + constant_part_13*span_rear_y*cos_a1
+                + constant_part_13*span_rear_x*sin_a1 + constant_part_14*span_rear_y*cos_a1
+                + constant_part_14*span_rear_x*sin_a1 - part_of_sine_square_a2_left_left_6
             )
             *(
-                constant_part_8 + constant_part_5*divisor_a2_right + link_length_2_squared*span_rear_x*span_rear_x
-                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_6*span_rear_y*cos_a1_right
-                - constant_part_6*span_rear_x*sin_a1_right - constant_part_7*span_rear_y*cos_a1_right
-                - constant_part_7*span_rear_x*sin_a1_right
+                part_of_sine_square_a2_left_left_6 + constant_part_12*divisor_a2 - constant_part_13*span_rear_y*cos_a1
+                - constant_part_13*span_rear_x*sin_a1 - constant_part_14*span_rear_y*cos_a1
+                - constant_part_14*span_rear_x*sin_a1
             )
-            /(constant_part_9*swing_scale_a2_right*swing_scale_a2_right)
+            /(constant_part_15*swing_scale_a2*swing_scale_a2)
         )
-        sin_swing_a2_right_left = -(sqrt(sine_square_a2_right) if sine_square_a2_right > 0.0 else 0.0)
-        cos_a2_right_left = (
-            along_a2_right*cos_swing_a2_right/divisor_a2_right
-            - across_a2_right*sin_swing_a2_right_left/divisor_a2_right
-        )
-        sin_a2_right_left = (
-            across_a2_right*cos_swing_a2_right/divisor_a2_right
-            + along_a2_right*sin_swing_a2_right_left/divisor_a2_right
-        )
-        axis_a2_right_left = offset_a2 + arctan2(sin_a2_right_left, cos_a2_right_left + 0.0)/DEGREE  # A2: its turn
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
+        cos_a2_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
+        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
+        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
+        sin_a2_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
+        axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_left - open_a2 < 179.999999999:
             axis_a2_right_left = nearest_period(axis_a2_right_left, open_a2)
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        cos_a2_right_right = (
-            across_a2_right*sin_swing_a2_right_left/divisor_a2_right
-            + along_a2_right*cos_swing_a2_right/divisor_a2_right
-        )
-        sin_a2_right_right = (
-            across_a2_right*cos_swing_a2_right/divisor_a2_right
-            - along_a2_right*sin_swing_a2_right_left/divisor_a2_right
-        )
-        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right_right, cos_a2_right_right + 0.0)/DEGREE  # A2: its turn
+        cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
+        sin_a2_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
+        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_right - open_a2 < 179.999999999:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
-        if sine_square_a2_right >= -1e-12 and axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2_right > link_length_5_times_shortest_link:
-            pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-            pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
-            # rod rear
-            pivot_rear_x_right_left = (
-                constant_part_10*sin_a1_right + link_length_1*sin_a1_right - link_length_5*cos_a2_right_left
+        if sine_square_a2 >= -1e-12 and axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link:
+            pivot_upper_x = -link_length_1*sin_a1  # rod upper
+            pivot_upper_y = -link_length_1*cos_a1  # rod upper
+            part_of_pivot_rear_x_left_right = constant_part_2*sin_a1 + link_length_1*sin_a1
+            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_left  # rod rear
+            part_of_pivot_rear_y_left_right = constant_part_2*cos_a1 + link_length_1*cos_a1
+            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
+            part_of_centre_1_x = pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
+            centre_1_x = pivot_upper_x - part_of_centre_1_x
+            rod_1_x = x - centre_1_x
+            centre_1_y = part_of_centre_1_x + pivot_upper_y
+            rod_1_y = y - centre_1_y
+            part_of_centre_2_x_left_right_left_right_2 = (
+                link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
-            # rod rear
-            pivot_rear_y_right_left = (
-                constant_part_10*cos_a1_right + link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
-            )
-            centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
-            rod_1_x_right = x - centre_1_x_right
-            centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
-            rod_1_y_right = y - centre_1_y_right
-            centre_2_x_right_left = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_x_right_left - link_length_2*pivot_rear_x_right_left
-                    - link_length_2_times_swap_xy*pivot_rear_y_right_left
-                )
+            centre_2_x_left = (part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_x_left)/link_length_3
+            rod_2_x_left = x - centre_2_x_left
+            centre_2_y_left = (
+                (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)
                 /link_length_3
             )
-            rod_2_x_right_left = x - centre_2_x_right_left
-            centre_2_y_right_left = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_y_right_left - link_length_2*pivot_rear_y_right_left
-                    - link_length_2_times_swap_xy*pivot_rear_x_right_left
-                )
-                /link_length_3
-            )
-            rod_2_y_right_left = y - centre_2_y_right_left
-            type2_arms_aligned_right_left = (
-                constant_part_11*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
+            rod_2_y_left = y - centre_2_y_left
+            type2_arms_aligned_left = (
+                constant_part_16*(rod_1_x*rod_2_y_left - rod_1_y*rod_2_x_left)
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x_right*pivot_upper_x_right*swap_xy_squared_times_2
-                        + pivot_upper_x_right*pivot_upper_y_right*swap_xy_times_4
-                        + pivot_upper_y_right*pivot_upper_y_right*swap_xy_squared_times_2
-                        - pivot_upper_x_right*pivot_upper_x_right*swap_xy_times_2
-                        - pivot_upper_x_right*pivot_upper_y_right*swap_xy_squared_times_4
-                        - pivot_upper_y_right*pivot_upper_y_right*swap_xy_times_2
+                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
+                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
+                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
+                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
+                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
+                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
                     )
                     *root(
-                        link_length_4_squared + pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy_squared_times_2
-                        + pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy_times_4
-                        + pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy_squared_times_2
-                        - pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy_times_2
-                        - pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy_squared_times_4
-                        - pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy_times_2
+                        link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
+                        + pivot_rear_x_left*pivot_rear_y_left*swap_xy_times_4
+                        + pivot_rear_y_left*pivot_rear_y_left*swap_xy_squared_times_2
+                        - pivot_rear_x_left*pivot_rear_x_left*swap_xy_times_2
+                        - pivot_rear_x_left*pivot_rear_y_left*swap_xy_squared_times_4
+                        - pivot_rear_y_left*pivot_rear_y_left*swap_xy_times_2
                     )
                 )
             )
@@ -418,52 +406,37 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_right_left = (
                 0.0
                 if (axis_a2_right_left >= lowest_a2) and (
-                    type2_arms_aligned_right_left >= min_type2_margin
+                    type2_arms_aligned_left >= min_type2_margin
                 ) and (axis_a2_right_left <= highest_a2)
                 else 3.0
             )
-            # rod rear
-            pivot_rear_x_right_right = (
-                constant_part_10*sin_a1_right + link_length_1*sin_a1_right - link_length_5*cos_a2_right_right
+            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right  # rod rear
+            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right  # rod rear
+            part_of_centre_2_x = (
+                link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
-            # rod rear
-            pivot_rear_y_right_right = (
-                constant_part_10*cos_a1_right + link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
-            )
-            centre_2_x_right_right = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_x_right_right - link_length_2*pivot_rear_x_right_right
-                    - link_length_2_times_swap_xy*pivot_rear_y_right_right
-                )
-                /link_length_3
-            )
-            rod_2_x_right_right = x - centre_2_x_right_right
-            centre_2_y_right_right = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_y_right_right - link_length_2*pivot_rear_y_right_right
-                    - link_length_2_times_swap_xy*pivot_rear_x_right_right
-                )
-                /link_length_3
-            )
-            rod_2_y_right_right = y - centre_2_y_right_right
-            type2_arms_aligned_right_right = (
-                constant_part_11*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
+            centre_2_x_right = (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3
+            rod_2_x_right = x - centre_2_x_right
+            centre_2_y_right = (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3
+            rod_2_y_right = y - centre_2_y_right
+            type2_arms_aligned_right = (
+                constant_part_16*(rod_1_x*rod_2_y_right - rod_1_y*rod_2_x_right)
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x_right*pivot_upper_x_right*swap_xy_squared_times_2
-                        + pivot_upper_x_right*pivot_upper_y_right*swap_xy_times_4
-                        + pivot_upper_y_right*pivot_upper_y_right*swap_xy_squared_times_2
-                        - pivot_upper_x_right*pivot_upper_x_right*swap_xy_times_2
-                        - pivot_upper_x_right*pivot_upper_y_right*swap_xy_squared_times_4
-                        - pivot_upper_y_right*pivot_upper_y_right*swap_xy_times_2
+                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
+                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
+                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
+                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
+                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
+                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
                     )
                     *root(
-                        link_length_4_squared + pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy_squared_times_2
-                        + pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy_times_4
-                        + pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy_squared_times_2
-                        - pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy_times_2
-                        - pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy_squared_times_4
-                        - pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy_times_2
+                        link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
+                        + pivot_rear_x_right*pivot_rear_y_right*swap_xy_times_4
+                        + pivot_rear_y_right*pivot_rear_y_right*swap_xy_squared_times_2
+                        - pivot_rear_x_right*pivot_rear_x_right*swap_xy_times_2
+                        - pivot_rear_x_right*pivot_rear_y_right*swap_xy_squared_times_4
+                        - pivot_rear_y_right*pivot_rear_y_right*swap_xy_times_2
                     )
                 )
             )
@@ -471,7 +444,7 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_right_right = (
                 0.0
                 if (axis_a2_right_right >= lowest_a2) and (
-                    type2_arms_aligned_right_right >= min_type2_margin
+                    type2_arms_aligned_right >= min_type2_margin
                 ) and (axis_a2_right_right <= highest_a2)
                 else 3.0
             )
@@ -493,8 +466,9 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 4*(None,)
-        span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
-        span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
+        swap_xy_times_x_minus_swap_xy_times_y = swap_xy*x - swap_xy*y
+        span_upper_x = x - swap_xy_times_x_minus_swap_xy_times_y  # rod upper
+        span_upper_y = swap_xy_times_x_minus_swap_xy_times_y + y  # rod upper
         # effective length that the angle turns
         effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
@@ -511,342 +485,302 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 4*(None,)
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
-        sin_swing_a1_left = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
-        sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1_left/divisor_a1
-        cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1_left/divisor_a1
-        span_rear_x = constant_part_2*x - constant_part_2*y - link_length_3_by_link_length_2*x  # rod rear
-        along_a2_left = (
+        cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
+        sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
+        cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
+        part_of_span_rear_x = constant_part_3*x - constant_part_3*y
+        span_rear_x = part_of_span_rear_x - link_length_3_by_link_length_2*x  # rod rear
+        link_length_2_times_span_rear_x = link_length_2*span_rear_x
+        along_a2 = (
             (
-                link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1_left
-                - link_length_1_times_link_length_3*sin_a1_left
+                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
+                - link_length_1_times_link_length_3*sin_a1
             )
             /link_length_2
         )
-        span_rear_y = constant_part_2*y - constant_part_2*x - link_length_3_by_link_length_2*y  # rod rear
-        across_a2_left = (
+        span_rear_y = -part_of_span_rear_x - link_length_3_by_link_length_2*y  # rod rear
+        link_length_2_times_span_rear_y = link_length_2*span_rear_y
+        across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1_left + link_length_1_times_link_length_3*cos_a1_left
-                - link_length_2*span_rear_y
+                link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
+                - link_length_2_times_span_rear_y
             )
             /link_length_2
         )
-        # effective length that the angle turns
-        effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
-        divisor_a2_left = effective_a2_left if effective_a2_left > link_length_5_times_shortest_link else 1.0
-        swing_scale_a2_left = divisor_a2_left*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        cos_swing_a2_left = (
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        link_length_4_squared_minus_span_rear_x_squared = link_length_4_squared - span_rear_x*span_rear_x
+        part_of_cos_swing_a2 = link_length_1_squared - link_length_4_squared_minus_span_rear_x_squared
+        link_length_5_squared_plus_part_of_cos_swing_a2 = link_length_5_squared + part_of_cos_swing_a2
+        part_of_cos_swing_a2_left_left_2 = link_length_5_squared_plus_part_of_cos_swing_a2 + span_rear_y*span_rear_y
+        part_of_cos_swing_a2_left_left_3 = constant_part_4 + part_of_cos_swing_a2_left_left_2
+        part_of_cos_swing_a2_left_left_4 = constant_part_5 + part_of_cos_swing_a2_left_left_3
+        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
+        cos_swing_a2 = (
             (
-                constant_part_3*span_rear_y*cos_a1_left + constant_part_3*span_rear_x*sin_a1_left
-                + link_length_1_times_2*span_rear_y*cos_a1_left + link_length_1_times_2*span_rear_x*sin_a1_left
-                - constant_part_4 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
+                constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
+                + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
+                - part_of_cos_swing_a2_left_left_4
             )
-            /swing_scale_a2_left
+            /swing_scale_a2
         )
+        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        part_of_sine_square_a2 = constant_part_7 + link_length_2_squared*span_rear_x*span_rear_x
+        part_of_sine_square_a2_left_left_2 = constant_part_8 + part_of_sine_square_a2
+        part_of_sine_square_a2_left_left_3 = constant_part_9 + part_of_sine_square_a2_left_left_2
+        part_of_sine_square_a2_left_left_4 = (
+            part_of_sine_square_a2_left_left_3 + link_length_2_squared*span_rear_y*span_rear_y
+        )
+        part_of_sine_square_a2_left_left_5 = constant_part_10 - part_of_sine_square_a2_left_left_4
+        part_of_sine_square_a2_left_left_6 = constant_part_11 - part_of_sine_square_a2_left_left_5
         # kept as a product
-        sine_square_a2_left = (
+        sine_square_a2 = (
             (
-                constant_part_5*divisor_a2_left + constant_part_6*span_rear_y*cos_a1_left
-                + constant_part_6*span_rear_x*sin_a1_left + constant_part_7*span_rear_y*cos_a1_left
-                + constant_part_7*span_rear_x*sin_a1_left - constant_part_8
-                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
+                constant_part_12*divisor_a2 + constant_part_13*span_rear_y*cos_a1
+                + constant_part_13*span_rear_x*sin_a1 + constant_part_14*span_rear_y*cos_a1
+                + constant_part_14*span_rear_x*sin_a1 - part_of_sine_square_a2_left_left_6
             )
             *(
-                constant_part_8 + constant_part_5*divisor_a2_left + link_length_2_squared*span_rear_x*span_rear_x
-                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_6*span_rear_y*cos_a1_left
-                - constant_part_6*span_rear_x*sin_a1_left - constant_part_7*span_rear_y*cos_a1_left
-                - constant_part_7*span_rear_x*sin_a1_left
+                part_of_sine_square_a2_left_left_6 + constant_part_12*divisor_a2 - constant_part_13*span_rear_y*cos_a1
+                - constant_part_13*span_rear_x*sin_a1 - constant_part_14*span_rear_y*cos_a1
+                - constant_part_14*span_rear_x*sin_a1
             )
-            /(constant_part_9*swing_scale_a2_left*swing_scale_a2_left)
+            /(constant_part_15*swing_scale_a2*swing_scale_a2)
         )
-        sin_swing_a2_left_left = -(sqrt(sine_square_a2_left) if sine_square_a2_left > 0.0 else 0.0)
-        cos_a2_left_left = (
-            along_a2_left*cos_swing_a2_left/divisor_a2_left - across_a2_left*sin_swing_a2_left_left/divisor_a2_left
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
+        cos_a2_left = (
+            across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
         )
-        sin_a2_left_left = (
-            across_a2_left*cos_swing_a2_left/divisor_a2_left + along_a2_left*sin_swing_a2_left_left/divisor_a2_left
+        along_a2_times_sin_swing_a2_by_divisor_a2_left_right = along_a2*sin_swing_a2/divisor_a2
+        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
+        sin_a2_left = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
-        cos_a2_left_right = (
-            across_a2_left*sin_swing_a2_left_left/divisor_a2_left + along_a2_left*cos_swing_a2_left/divisor_a2_left
+        cos_a2_right = (
+            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
-        sin_a2_left_right = (
-            across_a2_left*cos_swing_a2_left/divisor_a2_left - along_a2_left*sin_swing_a2_left_left/divisor_a2_left
+        sin_a2_right = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
-        if sine_square_a2_left >= -1e-12 and effective_a2_left > link_length_5_times_shortest_link:
-            pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
-            pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-            # rod rear
-            pivot_rear_x_left_left = (
-                constant_part_10*sin_a1_left + link_length_1*sin_a1_left - link_length_5*cos_a2_left_left
+        if sine_square_a2 >= -1e-12 and effective_a2 > link_length_5_times_shortest_link:
+            pivot_upper_x = -link_length_1*sin_a1  # rod upper
+            pivot_upper_y = -link_length_1*cos_a1  # rod upper
+            part_of_pivot_rear_x = constant_part_2*sin_a1 + link_length_1*sin_a1
+            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
+            part_of_pivot_rear_y = constant_part_2*cos_a1 + link_length_1*cos_a1
+            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
+            part_of_centre_1_x = pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
+            centre_1_x = pivot_upper_x - part_of_centre_1_x
+            rod_1_x = x - centre_1_x
+            centre_1_y = part_of_centre_1_x + pivot_upper_y
+            rod_1_y = y - centre_1_y
+            part_of_centre_2_x = (
+                link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
-            # rod rear
-            pivot_rear_y_left_left = (
-                constant_part_10*cos_a1_left + link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
-            )
-            centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
-            rod_1_x_left = x - centre_1_x_left
-            centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
-            rod_1_y_left = y - centre_1_y_left
-            centre_2_x_left_left = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_x_left_left - link_length_2*pivot_rear_x_left_left
-                    - link_length_2_times_swap_xy*pivot_rear_y_left_left
-                )
-                /link_length_3
-            )
-            rod_2_x_left_left = x - centre_2_x_left_left
-            centre_2_y_left_left = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_y_left_left - link_length_2*pivot_rear_y_left_left
-                    - link_length_2_times_swap_xy*pivot_rear_x_left_left
-                )
-                /link_length_3
-            )
-            rod_2_y_left_left = y - centre_2_y_left_left
-            type2_arms_aligned_left_left = (
-                constant_part_11*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
+            centre_2_x_left = (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3
+            rod_2_x_left = x - centre_2_x_left
+            centre_2_y_left = (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3
+            rod_2_y_left = y - centre_2_y_left
+            type2_arms_aligned_left = (
+                constant_part_16*(rod_1_x*rod_2_y_left - rod_1_y*rod_2_x_left)
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x_left*pivot_upper_x_left*swap_xy_squared_times_2
-                        + pivot_upper_x_left*pivot_upper_y_left*swap_xy_times_4
-                        + pivot_upper_y_left*pivot_upper_y_left*swap_xy_squared_times_2
-                        - pivot_upper_x_left*pivot_upper_x_left*swap_xy_times_2
-                        - pivot_upper_x_left*pivot_upper_y_left*swap_xy_squared_times_4
-                        - pivot_upper_y_left*pivot_upper_y_left*swap_xy_times_2
+                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
+                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
+                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
+                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
+                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
+                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
                     )
                     *root(
-                        link_length_4_squared + pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy_squared_times_2
-                        + pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy_times_4
-                        + pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy_squared_times_2
-                        - pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy_times_2
-                        - pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy_squared_times_4
-                        - pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy_times_2
+                        link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
+                        + pivot_rear_x_left*pivot_rear_y_left*swap_xy_times_4
+                        + pivot_rear_y_left*pivot_rear_y_left*swap_xy_squared_times_2
+                        - pivot_rear_x_left*pivot_rear_x_left*swap_xy_times_2
+                        - pivot_rear_x_left*pivot_rear_y_left*swap_xy_squared_times_4
+                        - pivot_rear_y_left*pivot_rear_y_left*swap_xy_times_2
                     )
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_left = 0.0 if type2_arms_aligned_left_left >= min_type2_margin else 3.0
-            # rod rear
-            pivot_rear_x_left_right = (
-                constant_part_10*sin_a1_left + link_length_1*sin_a1_left - link_length_5*cos_a2_left_right
+            refusal_left_left = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
+            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_right  # rod rear
+            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_right  # rod rear
+            part_of_centre_2_x_left_right = (
+                link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
-            # rod rear
-            pivot_rear_y_left_right = (
-                constant_part_10*cos_a1_left + link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
-            )
-            centre_2_x_left_right = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_x_left_right - link_length_2*pivot_rear_x_left_right
-                    - link_length_2_times_swap_xy*pivot_rear_y_left_right
-                )
-                /link_length_3
-            )
-            rod_2_x_left_right = x - centre_2_x_left_right
-            centre_2_y_left_right = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_y_left_right - link_length_2*pivot_rear_y_left_right
-                    - link_length_2_times_swap_xy*pivot_rear_x_left_right
-                )
-                /link_length_3
-            )
-            rod_2_y_left_right = y - centre_2_y_left_right
-            type2_arms_aligned_left_right = (
-                constant_part_11*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
+            centre_2_x_right = (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3
+            rod_2_x_right = x - centre_2_x_right
+            centre_2_y_right = (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3
+            rod_2_y_right = y - centre_2_y_right
+            type2_arms_aligned_right = (
+                constant_part_16*(rod_1_x*rod_2_y_right - rod_1_y*rod_2_x_right)
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x_left*pivot_upper_x_left*swap_xy_squared_times_2
-                        + pivot_upper_x_left*pivot_upper_y_left*swap_xy_times_4
-                        + pivot_upper_y_left*pivot_upper_y_left*swap_xy_squared_times_2
-                        - pivot_upper_x_left*pivot_upper_x_left*swap_xy_times_2
-                        - pivot_upper_x_left*pivot_upper_y_left*swap_xy_squared_times_4
-                        - pivot_upper_y_left*pivot_upper_y_left*swap_xy_times_2
+                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
+                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
+                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
+                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
+                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
+                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
                     )
                     *root(
-                        link_length_4_squared + pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy_squared_times_2
-                        + pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy_times_4
-                        + pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy_squared_times_2
-                        - pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy_times_2
-                        - pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy_squared_times_4
-                        - pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy_times_2
+                        link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
+                        + pivot_rear_x_right*pivot_rear_y_right*swap_xy_times_4
+                        + pivot_rear_y_right*pivot_rear_y_right*swap_xy_squared_times_2
+                        - pivot_rear_x_right*pivot_rear_x_right*swap_xy_times_2
+                        - pivot_rear_x_right*pivot_rear_y_right*swap_xy_squared_times_4
+                        - pivot_rear_y_right*pivot_rear_y_right*swap_xy_times_2
                     )
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_right = 0.0 if type2_arms_aligned_left_right >= min_type2_margin else 3.0
+            refusal_left_right = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
         else:
             refusal_left_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_left_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-        sin_a1_right = span_upper_x*cos_swing_a1/divisor_a1 - span_upper_y*sin_swing_a1_left/divisor_a1
-        cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_left/divisor_a1
-        along_a2_right = (
+        axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)*RADIAN  # A2: its turn
+        axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)*RADIAN  # A2: its turn
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
+        along_a2 = (
             (
-                link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1_right
-                - link_length_1_times_link_length_3*sin_a1_right
+                link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
+                - link_length_1_times_link_length_3*sin_a1
             )
             /link_length_2
         )
-        across_a2_right = (
+        across_a2 = (
             (
-                link_length_1_times_link_length_2*cos_a1_right + link_length_1_times_link_length_3*cos_a1_right
-                - link_length_2*span_rear_y
+                link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
+                - link_length_2_times_span_rear_y
             )
             /link_length_2
         )
-        # effective length that the angle turns
-        effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
-        divisor_a2_right = effective_a2_right if effective_a2_right > link_length_5_times_shortest_link else 1.0
-        swing_scale_a2_right = divisor_a2_right*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        cos_swing_a2_right = (
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
+        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
+        cos_swing_a2 = (
             (
-                constant_part_3*span_rear_y*cos_a1_right + constant_part_3*span_rear_x*sin_a1_right
-                + link_length_1_times_2*span_rear_y*cos_a1_right + link_length_1_times_2*span_rear_x*sin_a1_right
-                - constant_part_4 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
+                constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
+                + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
+                - part_of_cos_swing_a2_left_left_4
             )
-            /swing_scale_a2_right
+            /swing_scale_a2
         )
+        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         # kept as a product
-        sine_square_a2_right = (
+        sine_square_a2 = (
             (
-                constant_part_5*divisor_a2_right + constant_part_6*span_rear_y*cos_a1_right
-                + constant_part_6*span_rear_x*sin_a1_right + constant_part_7*span_rear_y*cos_a1_right
-                + constant_part_7*span_rear_x*sin_a1_right - constant_part_8
-                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
+                constant_part_12*divisor_a2 + constant_part_13*span_rear_y*cos_a1
+                + constant_part_13*span_rear_x*sin_a1 + constant_part_14*span_rear_y*cos_a1
+                + constant_part_14*span_rear_x*sin_a1 - part_of_sine_square_a2_left_left_6
             )
             *(
-                constant_part_8 + constant_part_5*divisor_a2_right + link_length_2_squared*span_rear_x*span_rear_x
-                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_6*span_rear_y*cos_a1_right
-                - constant_part_6*span_rear_x*sin_a1_right - constant_part_7*span_rear_y*cos_a1_right
-                - constant_part_7*span_rear_x*sin_a1_right
+                part_of_sine_square_a2_left_left_6 + constant_part_12*divisor_a2 - constant_part_13*span_rear_y*cos_a1
+                - constant_part_13*span_rear_x*sin_a1 - constant_part_14*span_rear_y*cos_a1
+                - constant_part_14*span_rear_x*sin_a1
             )
-            /(constant_part_9*swing_scale_a2_right*swing_scale_a2_right)
+            /(constant_part_15*swing_scale_a2*swing_scale_a2)
         )
-        sin_swing_a2_right_left = -(sqrt(sine_square_a2_right) if sine_square_a2_right > 0.0 else 0.0)
-        cos_a2_right_left = (
-            along_a2_right*cos_swing_a2_right/divisor_a2_right
-            - across_a2_right*sin_swing_a2_right_left/divisor_a2_right
-        )
-        sin_a2_right_left = (
-            across_a2_right*cos_swing_a2_right/divisor_a2_right
-            + along_a2_right*sin_swing_a2_right_left/divisor_a2_right
-        )
-        cos_a2_right_right = (
-            across_a2_right*sin_swing_a2_right_left/divisor_a2_right
-            + along_a2_right*cos_swing_a2_right/divisor_a2_right
-        )
-        sin_a2_right_right = (
-            across_a2_right*cos_swing_a2_right/divisor_a2_right
-            - along_a2_right*sin_swing_a2_right_left/divisor_a2_right
-        )
-        if sine_square_a2_right >= -1e-12 and effective_a2_right > link_length_5_times_shortest_link:
-            pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-            pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
-            # rod rear
-            pivot_rear_x_right_left = (
-                constant_part_10*sin_a1_right + link_length_1*sin_a1_right - link_length_5*cos_a2_right_left
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
+        cos_a2_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
+        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
+        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
+        sin_a2_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
+        cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
+        sin_a2_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
+        if sine_square_a2 >= -1e-12 and effective_a2 > link_length_5_times_shortest_link:
+            pivot_upper_x = -link_length_1*sin_a1  # rod upper
+            pivot_upper_y = -link_length_1*cos_a1  # rod upper
+            part_of_pivot_rear_x_left_right = constant_part_2*sin_a1 + link_length_1*sin_a1
+            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_left  # rod rear
+            part_of_pivot_rear_y_left_right = constant_part_2*cos_a1 + link_length_1*cos_a1
+            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
+            part_of_centre_1_x = pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
+            centre_1_x = pivot_upper_x - part_of_centre_1_x
+            rod_1_x = x - centre_1_x
+            centre_1_y = part_of_centre_1_x + pivot_upper_y
+            rod_1_y = y - centre_1_y
+            part_of_centre_2_x_left_right_left_right_2 = (
+                link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
-            # rod rear
-            pivot_rear_y_right_left = (
-                constant_part_10*cos_a1_right + link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
-            )
-            centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
-            rod_1_x_right = x - centre_1_x_right
-            centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
-            rod_1_y_right = y - centre_1_y_right
-            centre_2_x_right_left = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_x_right_left - link_length_2*pivot_rear_x_right_left
-                    - link_length_2_times_swap_xy*pivot_rear_y_right_left
-                )
+            centre_2_x_left = (part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_x_left)/link_length_3
+            rod_2_x_left = x - centre_2_x_left
+            centre_2_y_left = (
+                (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)
                 /link_length_3
             )
-            rod_2_x_right_left = x - centre_2_x_right_left
-            centre_2_y_right_left = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_y_right_left - link_length_2*pivot_rear_y_right_left
-                    - link_length_2_times_swap_xy*pivot_rear_x_right_left
-                )
-                /link_length_3
-            )
-            rod_2_y_right_left = y - centre_2_y_right_left
-            type2_arms_aligned_right_left = (
-                constant_part_11*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
+            rod_2_y_left = y - centre_2_y_left
+            type2_arms_aligned_left = (
+                constant_part_16*(rod_1_x*rod_2_y_left - rod_1_y*rod_2_x_left)
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x_right*pivot_upper_x_right*swap_xy_squared_times_2
-                        + pivot_upper_x_right*pivot_upper_y_right*swap_xy_times_4
-                        + pivot_upper_y_right*pivot_upper_y_right*swap_xy_squared_times_2
-                        - pivot_upper_x_right*pivot_upper_x_right*swap_xy_times_2
-                        - pivot_upper_x_right*pivot_upper_y_right*swap_xy_squared_times_4
-                        - pivot_upper_y_right*pivot_upper_y_right*swap_xy_times_2
+                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
+                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
+                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
+                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
+                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
+                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
                     )
                     *root(
-                        link_length_4_squared + pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy_squared_times_2
-                        + pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy_times_4
-                        + pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy_squared_times_2
-                        - pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy_times_2
-                        - pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy_squared_times_4
-                        - pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy_times_2
+                        link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
+                        + pivot_rear_x_left*pivot_rear_y_left*swap_xy_times_4
+                        + pivot_rear_y_left*pivot_rear_y_left*swap_xy_squared_times_2
+                        - pivot_rear_x_left*pivot_rear_x_left*swap_xy_times_2
+                        - pivot_rear_x_left*pivot_rear_y_left*swap_xy_squared_times_4
+                        - pivot_rear_y_left*pivot_rear_y_left*swap_xy_times_2
                     )
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_left = 0.0 if type2_arms_aligned_right_left >= min_type2_margin else 3.0
-            # rod rear
-            pivot_rear_x_right_right = (
-                constant_part_10*sin_a1_right + link_length_1*sin_a1_right - link_length_5*cos_a2_right_right
+            refusal_right_left = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
+            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right  # rod rear
+            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right  # rod rear
+            part_of_centre_2_x = (
+                link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
-            # rod rear
-            pivot_rear_y_right_right = (
-                constant_part_10*cos_a1_right + link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
-            )
-            centre_2_x_right_right = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_x_right_right - link_length_2*pivot_rear_x_right_right
-                    - link_length_2_times_swap_xy*pivot_rear_y_right_right
-                )
-                /link_length_3
-            )
-            rod_2_x_right_right = x - centre_2_x_right_right
-            centre_2_y_right_right = (
-                (
-                    link_length_2_times_swap_xy*pivot_rear_y_right_right - link_length_2*pivot_rear_y_right_right
-                    - link_length_2_times_swap_xy*pivot_rear_x_right_right
-                )
-                /link_length_3
-            )
-            rod_2_y_right_right = y - centre_2_y_right_right
-            type2_arms_aligned_right_right = (
-                constant_part_11*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
+            centre_2_x_right = (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3
+            rod_2_x_right = x - centre_2_x_right
+            centre_2_y_right = (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3
+            rod_2_y_right = y - centre_2_y_right
+            type2_arms_aligned_right = (
+                constant_part_16*(rod_1_x*rod_2_y_right - rod_1_y*rod_2_x_right)
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x_right*pivot_upper_x_right*swap_xy_squared_times_2
-                        + pivot_upper_x_right*pivot_upper_y_right*swap_xy_times_4
-                        + pivot_upper_y_right*pivot_upper_y_right*swap_xy_squared_times_2
-                        - pivot_upper_x_right*pivot_upper_x_right*swap_xy_times_2
-                        - pivot_upper_x_right*pivot_upper_y_right*swap_xy_squared_times_4
-                        - pivot_upper_y_right*pivot_upper_y_right*swap_xy_times_2
+                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
+                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
+                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
+                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
+                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
+                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
                     )
                     *root(
-                        link_length_4_squared + pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy_squared_times_2
-                        + pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy_times_4
-                        + pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy_squared_times_2
-                        - pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy_times_2
-                        - pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy_squared_times_4
-                        - pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy_times_2
+                        link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
+                        + pivot_rear_x_right*pivot_rear_y_right*swap_xy_times_4
+                        + pivot_rear_y_right*pivot_rear_y_right*swap_xy_squared_times_2
+                        - pivot_rear_x_right*pivot_rear_x_right*swap_xy_times_2
+                        - pivot_rear_x_right*pivot_rear_y_right*swap_xy_squared_times_4
+                        - pivot_rear_y_right*pivot_rear_y_right*swap_xy_times_2
                     )
                 )
             )
             # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_right = 0.0 if type2_arms_aligned_right_right >= min_type2_margin else 3.0
+            refusal_right_right = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
         else:
             refusal_right_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_right_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
-        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left_left, cos_a2_left_left)/DEGREE  # A2: its turn
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)/DEGREE  # A1: its turn
-        axis_a2_right_left = offset_a2 + arctan2(sin_a2_right_left, cos_a2_right_left)/DEGREE  # A2: its turn
-        axis_a2_left_right = offset_a2 + arctan2(sin_a2_left_right, cos_a2_left_right)/DEGREE  # A2: its turn
-        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right_right, cos_a2_right_right)/DEGREE  # A2: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)*RADIAN  # A2: its turn
+        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)*RADIAN  # A2: its turn
         return (
             ((axis_a1_left, axis_a2_left_left) if refusal_left_left == 0.0 else None),
             ((axis_a1_right, axis_a2_right_left) if refusal_right_left == 0.0 else None),
@@ -882,7 +816,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
-        span_rear_x = constant_part_2*x - constant_part_2*y - link_length_3_by_link_length_2*x  # rod rear
+        span_rear_x = constant_part_3*x - constant_part_3*y - link_length_3_by_link_length_2*x  # rod rear
         along_a2 = (
             (
                 link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1
@@ -891,7 +825,7 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
-        span_rear_y = constant_part_2*y - constant_part_2*x - link_length_3_by_link_length_2*y  # rod rear
+        span_rear_y = constant_part_3*y - constant_part_3*x - link_length_3_by_link_length_2*y  # rod rear
         across_a2 = (
             (
                 link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
@@ -908,17 +842,18 @@ def unrolled(k: Constants) -> Unrolled:
         # kept as a product
         sine_square_a2 = (
             (
-                constant_part_5*divisor_a2 + constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
-                + constant_part_7*span_rear_y*cos_a1 + constant_part_7*span_rear_x*sin_a1 - constant_part_8
+                constant_part_12*divisor_a2 + constant_part_13*span_rear_y*cos_a1
+                + constant_part_13*span_rear_x*sin_a1 + constant_part_14*span_rear_y*cos_a1
+                + constant_part_14*span_rear_x*sin_a1 - constant_part_17
                 - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
             )
             *(
-                constant_part_8 + constant_part_5*divisor_a2 + link_length_2_squared*span_rear_x*span_rear_x
-                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_6*span_rear_y*cos_a1
-                - constant_part_6*span_rear_x*sin_a1 - constant_part_7*span_rear_y*cos_a1
-                - constant_part_7*span_rear_x*sin_a1
+                constant_part_17 + constant_part_12*divisor_a2 + link_length_2_squared*span_rear_x*span_rear_x
+                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_13*span_rear_y*cos_a1
+                - constant_part_13*span_rear_x*sin_a1 - constant_part_14*span_rear_y*cos_a1
+                - constant_part_14*span_rear_x*sin_a1
             )
-            /(constant_part_9*swing_scale_a2*swing_scale_a2)
+            /(constant_part_15*swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
@@ -927,17 +862,17 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
         cos_swing_a2 = (
             (
-                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
+                constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
                 + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
-                - constant_part_4 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
+                - constant_part_18 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
             )
             /swing_scale_a2
         )
         sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
-        pivot_rear_x = constant_part_10*sin_a1 + link_length_1*sin_a1 - link_length_5*cos_a2  # rod rear
+        pivot_rear_x = constant_part_2*sin_a1 + link_length_1*sin_a1 - link_length_5*cos_a2  # rod rear
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
-        pivot_rear_y = constant_part_10*cos_a1 + link_length_1*cos_a1 + link_length_5*sin_a2  # rod rear
+        pivot_rear_y = constant_part_2*cos_a1 + link_length_1*cos_a1 + link_length_5*sin_a2  # rod rear
         centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
         rod_1_x = x - centre_1_x
         centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
@@ -959,7 +894,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         rod_2_y = y - centre_2_y
         type2_arms_aligned = (
-            constant_part_11*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+            constant_part_16*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
             /(
                 root(
                     link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
@@ -980,8 +915,8 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
         return (axis_a1, axis_a2)
 
     return Unrolled(every_branch, branches, branch)

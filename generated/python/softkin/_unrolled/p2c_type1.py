@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, nearest_period, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -46,7 +46,10 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         ref_a1, ref_a2 = reference
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
+        if not (
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9
+        ):
             return 4*(2.0,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -83,83 +86,91 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 4*(3.0,)
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
-        sin_swing_a1_outward = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
-        cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1_outward/divisor_a1
-        sin_a1_outward = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
+        cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
+        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
+        sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
+        cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
+        sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
         cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
-        sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        cos_a2_outward = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_outward = displacement_minus_tcp_displacement + inner_arm*cos_a2_outward  # rod 2
-        rod_2_x_outward = x - pivot_2_x_outward
-        sin_a2_outward = span_2_x*sin_swing_a2_outward/divisor_a2 - y*cos_swing_a2/divisor_a2
-        pivot_2_y_outward = -inner_arm*sin_a2_outward  # rod 2
-        rod_2_y_outward = y - pivot_2_y_outward
+        cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
+        cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
+        rod_2_x_outward = x - pivot_2_x
+        sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*sin_swing_a2/divisor_a2
+        cos_swing_a2_times_y_by_divisor_a2 = y*cos_swing_a2/divisor_a2
+        sin_a2 = -cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
+        pivot_2_y = -inner_arm*sin_a2  # rod 2
+        rod_2_y_outward = y - pivot_2_y
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward + 0.0)/DEGREE  # A2: its turn
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward + 0.0)/DEGREE  # A1: its turn
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
-        cos_a2_inward = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_inward = displacement_minus_tcp_displacement + inner_arm*cos_a2_inward  # rod 2
-        rod_2_x_inward = x - pivot_2_x_inward
-        sin_a2_inward = -y*cos_swing_a2/divisor_a2 - span_2_x*sin_swing_a2_outward/divisor_a2
-        pivot_2_y_inward = -inner_arm*sin_a2_inward  # rod 2
-        rod_2_y_inward = y - pivot_2_y_inward
-        axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward + 0.0)/DEGREE  # A2: its turn
+        cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
+        rod_2_x_inward = x - pivot_2_x
+        sin_a2 = sin_swing_a2_times_span_2_x_by_divisor_a2 - cos_swing_a2_times_y_by_divisor_a2
+        pivot_2_y = -inner_arm*sin_a2  # rod 2
+        rod_2_y_inward = y - pivot_2_y
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x_outward = -displacement_minus_tcp_displacement - inner_arm*cos_a1_outward  # rod 1
-            rod_1_x_outward = x - pivot_1_x_outward
-            pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
-            rod_1_y_outward = y - pivot_1_y_outward
+            pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
+            rod_1_x = x - pivot_1_x
+            pivot_1_y = -inner_arm*sin_a1  # rod 1
+            rod_1_y = y - pivot_1_y
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
-                type2_arms_aligned_outward_outward = (
-                    assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_outward - rod_1_y_outward*rod_2_x_outward)
+                type2_arms_aligned_outward = (
+                    assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
                 )
                 # arms_aligned: the other assembly mode, or too near to losing the plate
-                refusal_outward_outward_2 = 0.0 if type2_arms_aligned_outward_outward >= min_type2_margin else 3.0
+                refusal_outward_outward_2 = 0.0 if type2_arms_aligned_outward >= min_type2_margin else 3.0
             else:
                 refusal_outward_outward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
-                type2_arms_aligned_outward_inward = (
-                    assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)
+                type2_arms_aligned_inward = (
+                    assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
                 )
                 # arms_aligned: the other assembly mode, or too near to losing the plate
-                refusal_outward_inward_2 = 0.0 if type2_arms_aligned_outward_inward >= min_type2_margin else 3.0
+                refusal_outward_inward_2 = 0.0 if type2_arms_aligned_inward >= min_type2_margin else 3.0
             else:
                 refusal_outward_inward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
         else:
             refusal_outward_outward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_outward_inward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-        cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + y*sin_swing_a1_outward/divisor_a1
-        sin_a1_inward = y*cos_swing_a1/divisor_a1 - span_1_x*sin_swing_a1_outward/divisor_a1
-        axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward + 0.0)/DEGREE  # A1: its turn
+        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
+        sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x_inward = -displacement_minus_tcp_displacement - inner_arm*cos_a1_inward  # rod 1
-            rod_1_x_inward = x - pivot_1_x_inward
-            pivot_1_y_inward = -inner_arm*sin_a1_inward  # rod 1
-            rod_1_y_inward = y - pivot_1_y_inward
+            pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
+            rod_1_x = x - pivot_1_x
+            pivot_1_y = -inner_arm*sin_a1  # rod 1
+            rod_1_y = y - pivot_1_y
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
-                type2_arms_aligned_inward_outward = (
-                    assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_outward - rod_1_y_inward*rod_2_x_outward)
+                type2_arms_aligned_outward = (
+                    assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
                 )
                 # arms_aligned: the other assembly mode, or too near to losing the plate
-                refusal_inward_outward_2 = 0.0 if type2_arms_aligned_inward_outward >= min_type2_margin else 3.0
+                refusal_inward_outward_2 = 0.0 if type2_arms_aligned_outward >= min_type2_margin else 3.0
             else:
                 refusal_inward_outward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
-                type2_arms_aligned_inward_inward = (
-                    assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)
+                type2_arms_aligned_inward = (
+                    assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
                 )
                 # arms_aligned: the other assembly mode, or too near to losing the plate
-                refusal_inward_inward_2 = 0.0 if type2_arms_aligned_inward_inward >= min_type2_margin else 3.0
+                refusal_inward_inward_2 = 0.0 if type2_arms_aligned_inward >= min_type2_margin else 3.0
             else:
                 refusal_inward_inward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
         else:
@@ -210,58 +221,58 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 4*(None,)
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
-        sin_swing_a1_outward = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
-        cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1_outward/divisor_a1
-        pivot_1_x_outward = -displacement_minus_tcp_displacement - inner_arm*cos_a1_outward  # rod 1
-        rod_1_x_outward = x - pivot_1_x_outward
-        sin_a1_outward = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
-        pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
-        rod_1_y_outward = y - pivot_1_y_outward
+        cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
+        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
+        rod_1_x = x - pivot_1_x
+        sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
+        cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
+        sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
+        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        rod_1_y = y - pivot_1_y
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
         cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
-        sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        cos_a2_outward = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_outward = displacement_minus_tcp_displacement + inner_arm*cos_a2_outward  # rod 2
-        rod_2_x_outward = x - pivot_2_x_outward
-        sin_a2_outward = span_2_x*sin_swing_a2_outward/divisor_a2 - y*cos_swing_a2/divisor_a2
-        pivot_2_y_outward = -inner_arm*sin_a2_outward  # rod 2
-        rod_2_y_outward = y - pivot_2_y_outward
-        type2_arms_aligned_outward_outward = (
-            assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_outward - rod_1_y_outward*rod_2_x_outward)
-        )
+        cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
+        cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
+        rod_2_x_outward = x - pivot_2_x
+        sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*sin_swing_a2/divisor_a2
+        cos_swing_a2_times_y_by_divisor_a2 = y*cos_swing_a2/divisor_a2
+        sin_a2 = -cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
+        pivot_2_y = -inner_arm*sin_a2  # rod 2
+        rod_2_y_outward = y - pivot_2_y
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward = 0.0 if type2_arms_aligned_outward_outward >= min_type2_margin else 3.0
-        axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward)/DEGREE  # A1: its turn
-        axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward)/DEGREE  # A2: its turn
-        cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + y*sin_swing_a1_outward/divisor_a1
-        pivot_1_x_inward = -displacement_minus_tcp_displacement - inner_arm*cos_a1_inward  # rod 1
-        rod_1_x_inward = x - pivot_1_x_inward
-        sin_a1_inward = y*cos_swing_a1/divisor_a1 - span_1_x*sin_swing_a1_outward/divisor_a1
-        pivot_1_y_inward = -inner_arm*sin_a1_inward  # rod 1
-        rod_1_y_inward = y - pivot_1_y_inward
-        type2_arms_aligned_inward_outward = (
-            assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_outward - rod_1_y_inward*rod_2_x_outward)
-        )
+        refusal_outward_outward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
+        pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
+        rod_2_x_inward = x - pivot_2_x
+        sin_a2 = sin_swing_a2_times_span_2_x_by_divisor_a2 - cos_swing_a2_times_y_by_divisor_a2
+        pivot_2_y = -inner_arm*sin_a2  # rod 2
+        rod_2_y_inward = y - pivot_2_y
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward = 0.0 if type2_arms_aligned_inward_outward >= min_type2_margin else 3.0
-        axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward)/DEGREE  # A1: its turn
-        cos_a2_inward = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_inward = displacement_minus_tcp_displacement + inner_arm*cos_a2_inward  # rod 2
-        rod_2_x_inward = x - pivot_2_x_inward
-        sin_a2_inward = -y*cos_swing_a2/divisor_a2 - span_2_x*sin_swing_a2_outward/divisor_a2
-        pivot_2_y_inward = -inner_arm*sin_a2_inward  # rod 2
-        rod_2_y_inward = y - pivot_2_y_inward
-        type2_arms_aligned_outward_inward = (
-            assembly_sign_by_outer_arm_squared*(rod_1_x_outward*rod_2_y_inward - rod_1_y_outward*rod_2_x_inward)
-        )
+        refusal_outward_inward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
+        pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
+        rod_1_x = x - pivot_1_x
+        sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
+        pivot_1_y = -inner_arm*sin_a1  # rod 1
+        rod_1_y = y - pivot_1_y
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward = 0.0 if type2_arms_aligned_outward_inward >= min_type2_margin else 3.0
-        axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward)/DEGREE  # A2: its turn
-        type2_arms_aligned_inward_inward = (
-            assembly_sign_by_outer_arm_squared*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)
-        )
+        refusal_inward_outward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward = 0.0 if type2_arms_aligned_inward_inward >= min_type2_margin else 3.0
+        refusal_inward_inward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
         return (
             ((axis_a1_outward, axis_a2_outward) if refusal_outward_outward == 0.0 else None),
             ((axis_a1_inward, axis_a2_outward) if refusal_inward_outward == 0.0 else None),
@@ -328,8 +339,8 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
         return (axis_a1, axis_a2)
 
     return Unrolled(every_branch, branches, branch)

@@ -39,7 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return 4*(2.0,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -54,51 +54,55 @@ def unrolled(k: Constants) -> Unrolled:
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
             return 4*(3.0,)
-        span_1_x = x - tcp_offset_1  # rod 1
-        a1_left = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         span_2_x = tcp_offset_2 + x  # rod 2
-        a2_right = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x_right = a2_right - tcp_offset_2  # rod 2
-        rod_2_x_right = x - pivot_2_x_right
-        axis_a2_right = a2_right + offset_a2
-        axis_a1_left = a1_left + offset_a1
-        a2_left = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x_left = a2_left - tcp_offset_2  # rod 2
-        rod_2_x_left = x - pivot_2_x_left
-        axis_a2_left = a2_left + offset_a2
+        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        rod_2_x = x - pivot_2_x
+        rod_2_x_times_span_1_y_right = rod_2_x*span_1_y
+        span_1_x = x - tcp_offset_1  # rod 1
+        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        axis_a2_right = a2 + offset_a2
+        axis_a1_left = a1 + offset_a1
+        a2 = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        rod_2_x = x - pivot_2_x
+        rod_2_x_times_span_1_y_left = rod_2_x*span_1_y
+        axis_a2_left = a2 + offset_a2
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1:
-            pivot_1_x_left = a1_left + tcp_offset_1  # rod 1
-            rod_1_x_left = x - pivot_1_x_left
+            pivot_1_x = a1 + tcp_offset_1  # rod 1
+            rod_1_x = x - pivot_1_x
+            rod_1_x_times_span_2_y = rod_1_x*span_2_y
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
-                type2_arms_aligned_left_right = constant_part*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)
+                type2_arms_aligned_right = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
                 # arms_aligned: the other assembly mode, or too near to losing the plate
-                refusal_left_right_2 = 0.0 if type2_arms_aligned_left_right >= min_type2_margin else 3.0
+                refusal_left_right_2 = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
             else:
                 refusal_left_right_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
-                type2_arms_aligned_left_left = constant_part*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)
+                type2_arms_aligned_left = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
                 # arms_aligned: the other assembly mode, or too near to losing the plate
-                refusal_left_left_2 = 0.0 if type2_arms_aligned_left_left >= min_type2_margin else 3.0
+                refusal_left_left_2 = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
             else:
                 refusal_left_left_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
         else:
             refusal_left_right_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_left_left_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-        a1_right = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        axis_a1_right = a1_right + offset_a1
+        a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        axis_a1_right = a1 + offset_a1
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
-            pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
-            rod_1_x_right = x - pivot_1_x_right
+            pivot_1_x = a1 + tcp_offset_1  # rod 1
+            rod_1_x = x - pivot_1_x
+            rod_1_x_times_span_2_y = rod_1_x*span_2_y
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
-                type2_arms_aligned_right_right = constant_part*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)
+                type2_arms_aligned_right = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
                 # arms_aligned: the other assembly mode, or too near to losing the plate
-                refusal_right_right_2 = 0.0 if type2_arms_aligned_right_right >= min_type2_margin else 3.0
+                refusal_right_right_2 = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
             else:
                 refusal_right_right_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
-                type2_arms_aligned_right_left = constant_part*(rod_1_x_right*span_2_y - rod_2_x_left*span_1_y)
+                type2_arms_aligned_left = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
                 # arms_aligned: the other assembly mode, or too near to losing the plate
-                refusal_right_left_2 = 0.0 if type2_arms_aligned_right_left >= min_type2_margin else 3.0
+                refusal_right_left_2 = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
             else:
                 refusal_right_left_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
         else:
@@ -127,36 +131,40 @@ def unrolled(k: Constants) -> Unrolled:
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_2_squared_times_rounding):
             return 4*(None,)
-        span_1_x = x - tcp_offset_1  # rod 1
-        a1_left = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x_left = a1_left + tcp_offset_1  # rod 1
-        rod_1_x_left = x - pivot_1_x_left
         span_2_x = tcp_offset_2 + x  # rod 2
-        a2_right = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x_right = a2_right - tcp_offset_2  # rod 2
-        rod_2_x_right = x - pivot_2_x_right
-        type2_arms_aligned_left_right = constant_part*(rod_1_x_left*span_2_y - rod_2_x_right*span_1_y)
+        a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        rod_2_x = x - pivot_2_x
+        rod_2_x_times_span_1_y_right = rod_2_x*span_1_y
+        span_1_x = x - tcp_offset_1  # rod 1
+        a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        rod_1_x = x - pivot_1_x
+        rod_1_x_times_span_2_y = rod_1_x*span_2_y
+        type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_left_right = 0.0 if type2_arms_aligned_left_right >= min_type2_margin else 3.0
-        axis_a1_left = a1_left + offset_a1
-        axis_a2_right = a2_right + offset_a2
-        a1_right = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x_right = a1_right + tcp_offset_1  # rod 1
-        rod_1_x_right = x - pivot_1_x_right
-        type2_arms_aligned_right_right = constant_part*(rod_1_x_right*span_2_y - rod_2_x_right*span_1_y)
+        refusal_left_right = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        axis_a1_left = a1 + offset_a1
+        axis_a2_right = a2 + offset_a2
+        a2 = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        pivot_2_x = a2 - tcp_offset_2  # rod 2
+        rod_2_x = x - pivot_2_x
+        rod_2_x_times_span_1_y_left = rod_2_x*span_1_y
+        type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_right_right = 0.0 if type2_arms_aligned_right_right >= min_type2_margin else 3.0
-        axis_a1_right = a1_right + offset_a1
-        a2_left = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x_left = a2_left - tcp_offset_2  # rod 2
-        rod_2_x_left = x - pivot_2_x_left
-        type2_arms_aligned_left_left = constant_part*(rod_1_x_left*span_2_y - rod_2_x_left*span_1_y)
+        refusal_left_left = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        axis_a2_left = a2 + offset_a2
+        a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        pivot_1_x = a1 + tcp_offset_1  # rod 1
+        rod_1_x = x - pivot_1_x
+        rod_1_x_times_span_2_y = rod_1_x*span_2_y
+        type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_left_left = 0.0 if type2_arms_aligned_left_left >= min_type2_margin else 3.0
-        axis_a2_left = a2_left + offset_a2
-        type2_arms_aligned_right_left = constant_part*(rod_1_x_right*span_2_y - rod_2_x_left*span_1_y)
+        refusal_right_right = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
+        axis_a1_right = a1 + offset_a1
+        type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        refusal_right_left = 0.0 if type2_arms_aligned_right_left >= min_type2_margin else 3.0
+        refusal_right_left = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
         return (
             ((axis_a1_left, axis_a2_right) if refusal_left_right == 0.0 else None),
             ((axis_a1_right, axis_a2_right) if refusal_right_right == 0.0 else None),

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -43,7 +43,10 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         ref_a1, ref_a2 = reference
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
+        if not (
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9
+        ):
             return 2*(2.0,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -59,67 +62,54 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2_from_a1 >= -1e-12):
             return 2*(3.0,)
         cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
-        sin_a2_from_a1_right = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
+        sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-            arm_across_a1_right = link_length_2*sin_a2_from_a1_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            arm_across_a1 = link_length_2*sin_a2_from_a1
+            angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
+            angle_of_x = arctan2(y + 0.0, x + 0.0)
+            angle_a1_right = angle_of_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1_right = cos(free_a1)  # its reference where it is free
-            sin_a1_right = sin(free_a1)
-            cos_a1_left = cos_a1_right  # its reference where it is free
-            sin_a1_left = sin_a1_right
+            angle_a1_right = free_a1
+            angle_a1_left = free_a1
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
+        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        # a2: what the sum a2_from_a1 leaves
-        cos_a2_right = cos_a1_right*cos_a2_from_a1 - sin_a1_right*sin_a2_from_a1_right
-        sin_a2_right = cos_a1_right*sin_a2_from_a1_right + cos_a2_from_a1*sin_a1_right
+        angle_a2_from_a1 = arctan2(sin_a2_from_a1 + 0.0, cos_a2_from_a1 + 0.0)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
+        # a2: what the sum a2_from_a1 leaves; A2: its turn
+        axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
-        limit_a1_right = DEGREE*(axis_a1_right - offset_a1)
-        limit_a2_right = DEGREE*(axis_a2_right - offset_a2)
-        limit_value_elbow_right = (limit_a2_right - limit_a1_right)/DEGREE  # the outer arm relative to the inner arm
+        limit_a1 = DEGREE*(axis_a1_right - offset_a1)
+        limit_a2 = DEGREE*(axis_a2_right - offset_a2)
+        limit_value_elbow = (limit_a2 - limit_a1)/DEGREE  # the outer arm relative to the inner arm
         # limits of A1, limits of A2, limits of the outer arm relative to the inner arm
         refusal_right = (
             0.0
-            if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (limit_value_elbow_right >= lowest_elbow) and (axis_a1_right <= highest_a1) and (axis_a2_right <= highest_a2) and (
-                limit_value_elbow_right <= highest_elbow
+            if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (limit_value_elbow >= lowest_elbow) and (axis_a1_right <= highest_a1) and (axis_a2_right <= highest_a2) and (
+                limit_value_elbow <= highest_elbow
             )
             else 3.0
         )
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        # a2: what the sum a2_from_a1 leaves
-        cos_a2_left = cos_a1_left*cos_a2_from_a1 + sin_a1_left*sin_a2_from_a1_right
-        sin_a2_left = cos_a2_from_a1*sin_a1_left - cos_a1_left*sin_a2_from_a1_right
-        axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
+        # a2: what the sum a2_from_a1 leaves; A2: its turn
+        axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
-        limit_a1_left = DEGREE*(axis_a1_left - offset_a1)
-        limit_a2_left = DEGREE*(axis_a2_left - offset_a2)
-        limit_value_elbow_left = (limit_a2_left - limit_a1_left)/DEGREE  # the outer arm relative to the inner arm
+        limit_a1 = DEGREE*(axis_a1_left - offset_a1)
+        limit_a2 = DEGREE*(axis_a2_left - offset_a2)
+        limit_value_elbow = (limit_a2 - limit_a1)/DEGREE  # the outer arm relative to the inner arm
         # limits of A1, limits of A2, limits of the outer arm relative to the inner arm
         refusal_left = (
             0.0
-            if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (limit_value_elbow_left >= lowest_elbow) and (axis_a1_left <= highest_a1) and (axis_a2_left <= highest_a2) and (
-                limit_value_elbow_left <= highest_elbow
+            if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (limit_value_elbow >= lowest_elbow) and (axis_a1_left <= highest_a1) and (axis_a2_left <= highest_a2) and (
+                limit_value_elbow <= highest_elbow
             )
             else 3.0
         )
@@ -146,38 +136,25 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2_from_a1 >= -1e-12):
             return 2*(None,)
         cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
-        sin_a2_from_a1_right = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
+        sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-            arm_across_a1_right = link_length_2*sin_a2_from_a1_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            arm_across_a1 = link_length_2*sin_a2_from_a1
+            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_x = arctan2(y, x)
+            angle_a1_right = angle_of_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1_right = cos(free_a1)  # its reference where it is free
-            sin_a1_right = sin(free_a1)
-            cos_a1_left = cos_a1_right  # its reference where it is free
-            sin_a1_left = sin_a1_right
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)/DEGREE  # A1: its turn
-        # a2: what the sum a2_from_a1 leaves
-        cos_a2_right = cos_a1_right*cos_a2_from_a1 - sin_a1_right*sin_a2_from_a1_right
-        sin_a2_right = cos_a1_right*sin_a2_from_a1_right + cos_a2_from_a1*sin_a1_right
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)/DEGREE  # A2: its turn
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
-        # a2: what the sum a2_from_a1 leaves
-        cos_a2_left = cos_a1_left*cos_a2_from_a1 + sin_a1_left*sin_a2_from_a1_right
-        sin_a2_left = cos_a2_from_a1*sin_a1_left - cos_a1_left*sin_a2_from_a1_right
-        axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)/DEGREE  # A2: its turn
+            angle_a1_right = free_a1
+            angle_a1_left = free_a1
+        axis_a1_right = offset_a1 + angle_a1_right*RADIAN  # A1: its turn
+        angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
+        # a2: what the sum a2_from_a1 leaves; A2: its turn
+        axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)*RADIAN
+        axis_a1_left = offset_a1 + angle_a1_left*RADIAN  # A1: its turn
+        # a2: what the sum a2_from_a1 leaves; A2: its turn
+        axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)*RADIAN
         return (
             (axis_a1_right, axis_a2_right),
             (axis_a1_left, axis_a2_left),
@@ -206,23 +183,15 @@ def unrolled(k: Constants) -> Unrolled:
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_x = arctan2(y, x)
+            angle_a1 = angle_of_x - angle_of_arm_along_a1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
-        cos_a2 = cos_a1*cos_a2_from_a1 - sin_a1*sin_a2_from_a1  # a2: what the sum a2_from_a1 leaves
-        sin_a2 = cos_a1*sin_a2_from_a1 + cos_a2_from_a1*sin_a1
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
+            angle_a1 = free_a1
+        axis_a1 = offset_a1 + angle_a1*RADIAN  # A1: its turn
+        angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
+        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves; A2: its turn
         return (axis_a1, axis_a2)
 
     return Unrolled(every_branch, branches, branch)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -34,18 +34,18 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         ref_c, _, _ = reference
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_c) <= 1e9):
+        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return 1*(2.0,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         if radius_c > machine_scale_times_free_angle:
-            cos_c = x/radius_c  # its reference where it is free
-            sin_c = y/radius_c
+            direction_x_c = x  # its reference where it is free
+            direction_y_c = y
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            cos_c = cos(free_c)  # its reference where it is free
-            sin_c = sin(free_c)
+            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_y_c = sin(free_c)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
-        axis_c = offset_c + arctan2(sin_c, cos_c + 0.0)/DEGREE  # C: its turn
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c - open_c < 179.999999999:
             axis_c = nearest_period(axis_c, open_c)
         # limits of C
@@ -69,13 +69,13 @@ def unrolled(k: Constants) -> Unrolled:
         ref_c, _, _ = reference
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         if radius_c > machine_scale_times_free_angle:
-            cos_c = x/radius_c  # its reference where it is free
-            sin_c = y/radius_c
+            direction_x_c = x  # its reference where it is free
+            direction_y_c = y
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            cos_c = cos(free_c)  # its reference where it is free
-            sin_c = sin(free_c)
-        axis_c = offset_c + arctan2(sin_c, cos_c)/DEGREE  # C: its turn
+            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_y_c = sin(free_c)
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN  # C: its turn
         axis_r = offset_r + radius_c
         axis_z = offset_z + z
         return (
@@ -88,13 +88,13 @@ def unrolled(k: Constants) -> Unrolled:
         ref_c, _, _ = reference
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         if radius_c > machine_scale_times_free_angle:
-            cos_c = x/radius_c  # its reference where it is free
-            sin_c = y/radius_c
+            direction_x_c = x  # its reference where it is free
+            direction_y_c = y
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            cos_c = cos(free_c)  # its reference where it is free
-            sin_c = sin(free_c)
-        axis_c = offset_c + arctan2(sin_c, cos_c)/DEGREE  # C: its turn
+            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_y_c = sin(free_c)
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN  # C: its turn
         axis_r = offset_r + radius_c
         axis_z = offset_z + z
         return (axis_c, axis_r, axis_z)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -40,12 +40,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
     machine_scale_times_free_angle = 1e-11*machine_scale
-    a2_squared_plus_effective_q3_2_squared = a2*a2 + effective_q3_2*effective_q3_2
     a2_plus_effective_q3_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2 = a2 - effective_q3_2
     swing_scale_q3_2_squared = swing_scale_q3_2*swing_scale_q3_2
-    a3_by_effective_q3_2 = a3/effective_q3_2
-    d4_by_effective_q3_2 = d4/effective_q3_2
+    a2_squared_plus_effective_q3_2_squared = a2*a2 + effective_q3_2*effective_q3_2
+    angle_of_a3_by_effective_q3_2 = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -53,8 +52,8 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, ref_a3 = reference
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return 4*(2.0,)
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
@@ -65,80 +64,65 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_q1 >= -1e-12):
             return 4*(3.0,)
         if distance_q1 > machine_scale_times_free_angle:
+            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
+            sin_swing_q1_times_x = x*sin_swing_q1
             cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
-            cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
-            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
+            cos_swing_q1_times_y = y*cos_swing_q1
+            cos_q1_front = (cos_swing_q1_times_y + sin_swing_q1_times_x)/divisor_q1  # its reference where it is free
+            cos_swing_q1_times_x = x*cos_swing_q1
+            sin_swing_q1_times_y = y*sin_swing_q1
+            sin_q1_front = (sin_swing_q1_times_y - cos_swing_q1_times_x)/divisor_q1
+            cos_q1_back = (cos_swing_q1_times_y - sin_swing_q1_times_x)/divisor_q1  # its reference where it is free
+            sin_q1_back = (-cos_swing_q1_times_x - sin_swing_q1_times_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)  # its reference where it is free
             sin_q1_front = sin(free_a1)
             cos_q1_back = cos_q1_front  # its reference where it is free
             sin_q1_back = sin_q1_front
-        wrist_x_from_q1_front = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
+        wrist_x_from_q1 = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
-        cos_swing_q3_front = (reach_front*reach_front - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3_front = (
-            (reach_front - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_front)
-            *(a2_plus_effective_q3_2 + reach_front)*(a2_plus_effective_q3_2 - reach_front)/swing_scale_q3_2_squared
+        sine_square_q3 = (
+            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
+            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
-        sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
-        cos_q3_front_down = a3_by_effective_q3_2*cos_swing_q3_front - d4_by_effective_q3_2*sin_swing_q3_front_down
-        sin_q3_front_down = a3_by_effective_q3_2*sin_swing_q3_front_down + d4_by_effective_q3_2*cos_swing_q3_front
-        cos_q3_front_up = a3_by_effective_q3_2*cos_swing_q3_front + d4_by_effective_q3_2*sin_swing_q3_front_down
-        sin_q3_front_up = d4_by_effective_q3_2*cos_swing_q3_front - a3_by_effective_q3_2*sin_swing_q3_front_down
-        if reach_front > machine_scale_times_free_angle:
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = sqrt(length_q2_squared_front_down) if length_q2_squared_front_down > 0.0 else 1.0
-            cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
-            sin_q2_front_down = across_q2_front_down/length_q2_front_down
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = sqrt(length_q2_squared_front_up) if length_q2_squared_front_up > 0.0 else 1.0
-            cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
-            sin_q2_front_up = across_q2_front_up/length_q2_front_up
+        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = effective_q3_2*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
+            angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
+            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
+            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_front_down = cos(free_a2)  # its reference where it is free
-            sin_q2_front_down = sin(free_a2)
-            cos_q2_front_up = cos_q2_front_down  # its reference where it is free
-            sin_q2_front_up = sin_q2_front_down
+            angle_q2_down = free_a2
+            angle_q2_up = free_a2
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down + 0.0)/DEGREE  # A2: its turn
+        axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
             axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
+        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down + 0.0)/DEGREE  # A3: its turn
+        axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
             axis_a1_front = nearest_period(axis_a1_front, open_a1)
-        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up + 0.0)/DEGREE  # A2: its turn
+        axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
             axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
-        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up + 0.0)/DEGREE  # A3: its turn
+        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
+        axis_a3_front_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
-        if sine_square_q3_front >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
+        if sine_square_q3 >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
             # limits of A2, limits of A3
             refusal_front_down = (
                 0.0
@@ -158,60 +142,45 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_front_down = 3.0  # limits of A2, limits of A3
             refusal_front_up = 3.0  # limits of A2, limits of A3
-        wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
-        reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
-        cos_swing_q3_back = (reach_back*reach_back - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        wrist_x_from_q1 = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3_back = (
-            (reach_back - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_back)
-            *(a2_plus_effective_q3_2 + reach_back)*(a2_plus_effective_q3_2 - reach_back)/swing_scale_q3_2_squared
+        sine_square_q3 = (
+            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
+            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
-        sin_swing_q3_back_down = -(sqrt(sine_square_q3_back) if sine_square_q3_back > 0.0 else 0.0)
-        cos_q3_back_down = a3_by_effective_q3_2*cos_swing_q3_back - d4_by_effective_q3_2*sin_swing_q3_back_down
-        sin_q3_back_down = a3_by_effective_q3_2*sin_swing_q3_back_down + d4_by_effective_q3_2*cos_swing_q3_back
-        cos_q3_back_up = a3_by_effective_q3_2*cos_swing_q3_back + d4_by_effective_q3_2*sin_swing_q3_back_down
-        sin_q3_back_up = d4_by_effective_q3_2*cos_swing_q3_back - a3_by_effective_q3_2*sin_swing_q3_back_down
-        if reach_back > machine_scale_times_free_angle:
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = sqrt(length_q2_squared_back_down) if length_q2_squared_back_down > 0.0 else 1.0
-            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
-            sin_q2_back_down = across_q2_back_down/length_q2_back_down
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = sqrt(length_q2_squared_back_up) if length_q2_squared_back_up > 0.0 else 1.0
-            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
-            sin_q2_back_up = across_q2_back_up/length_q2_back_up
+        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = effective_q3_2*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
+            angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
+            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
+            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_back_down = cos(free_a2)  # its reference where it is free
-            sin_q2_back_down = sin(free_a2)
-            cos_q2_back_up = cos_q2_back_down  # its reference where it is free
-            sin_q2_back_up = sin_q2_back_down
-        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down + 0.0)/DEGREE  # A2: its turn
+            angle_q2_down = free_a2
+            angle_q2_up = free_a2
+        axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
             axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
-        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down + 0.0)/DEGREE  # A3: its turn
+        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
+        axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
             axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_back - open_a1 < 179.999999999:
             axis_a1_back = nearest_period(axis_a1_back, open_a1)
-        axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up + 0.0)/DEGREE  # A2: its turn
+        axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_up - open_a2 < 179.999999999:
             axis_a2_back_up = nearest_period(axis_a2_back_up, open_a2)
-        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up + 0.0)/DEGREE  # A3: its turn
+        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
+        axis_a3_back_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
-        if sine_square_q3_back >= -1e-12 and axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1:
+        if sine_square_q3 >= -1e-12 and axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1:
             # limits of A2, limits of A3
             refusal_back_down = (
                 0.0
@@ -254,111 +223,81 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_q1 >= -1e-12):
             return 4*(None,)
         if distance_q1 > machine_scale_times_free_angle:
+            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
+            sin_swing_q1_times_x = x*sin_swing_q1
             cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
-            cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
-            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
+            cos_swing_q1_times_y = y*cos_swing_q1
+            cos_q1_front = (cos_swing_q1_times_y + sin_swing_q1_times_x)/divisor_q1  # its reference where it is free
+            cos_swing_q1_times_x = x*cos_swing_q1
+            sin_swing_q1_times_y = y*sin_swing_q1
+            sin_q1_front = (sin_swing_q1_times_y - cos_swing_q1_times_x)/divisor_q1
+            cos_q1_back = (cos_swing_q1_times_y - sin_swing_q1_times_x)/divisor_q1  # its reference where it is free
+            sin_q1_back = (-cos_swing_q1_times_x - sin_swing_q1_times_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)  # its reference where it is free
             sin_q1_front = sin(free_a1)
             cos_q1_back = cos_q1_front  # its reference where it is free
             sin_q1_back = sin_q1_front
-        wrist_x_from_q1_front = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
+        wrist_x_from_q1 = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3_front = (
-            (reach_front - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_front)
-            *(a2_plus_effective_q3_2 + reach_front)*(a2_plus_effective_q3_2 - reach_front)/swing_scale_q3_2_squared
+        sine_square_q3 = (
+            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
+            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
-        cos_swing_q3_front = (reach_front*reach_front - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        sin_swing_q3_front_down = -(sqrt(sine_square_q3_front) if sine_square_q3_front > 0.0 else 0.0)
-        cos_q3_front_down = a3_by_effective_q3_2*cos_swing_q3_front - d4_by_effective_q3_2*sin_swing_q3_front_down
-        sin_q3_front_down = a3_by_effective_q3_2*sin_swing_q3_front_down + d4_by_effective_q3_2*cos_swing_q3_front
-        cos_q3_front_up = a3_by_effective_q3_2*cos_swing_q3_front + d4_by_effective_q3_2*sin_swing_q3_front_down
-        sin_q3_front_up = d4_by_effective_q3_2*cos_swing_q3_front - a3_by_effective_q3_2*sin_swing_q3_front_down
-        if reach_front > machine_scale_times_free_angle:
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = sqrt(length_q2_squared_front_down) if length_q2_squared_front_down > 0.0 else 1.0
-            cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
-            sin_q2_front_down = across_q2_front_down/length_q2_front_down
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = sqrt(length_q2_squared_front_up) if length_q2_squared_front_up > 0.0 else 1.0
-            cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
-            sin_q2_front_up = across_q2_front_up/length_q2_front_up
+        refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN  # A1: its turn
+        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = effective_q3_2*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
+            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
+            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_front_down = cos(free_a2)  # its reference where it is free
-            sin_q2_front_down = sin(free_a2)
-            cos_q2_front_up = cos_q2_front_down  # its reference where it is free
-            sin_q2_front_up = sin_q2_front_down
-        wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
-        reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
+            angle_q2_down = free_a2
+            angle_q2_up = free_a2
+        axis_a2_front_down = offset_a2 + angle_q2_down*RADIAN  # A2: its turn
+        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
+        axis_a3_front_down = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
+        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
+        axis_a3_front_up = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        wrist_x_from_q1 = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3_back = (
-            (reach_back - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach_back)
-            *(a2_plus_effective_q3_2 + reach_back)*(a2_plus_effective_q3_2 - reach_back)/swing_scale_q3_2_squared
+        sine_square_q3 = (
+            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
+            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
-        cos_swing_q3_back = (reach_back*reach_back - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        sin_swing_q3_back_down = -(sqrt(sine_square_q3_back) if sine_square_q3_back > 0.0 else 0.0)
-        cos_q3_back_down = a3_by_effective_q3_2*cos_swing_q3_back - d4_by_effective_q3_2*sin_swing_q3_back_down
-        sin_q3_back_down = a3_by_effective_q3_2*sin_swing_q3_back_down + d4_by_effective_q3_2*cos_swing_q3_back
-        cos_q3_back_up = a3_by_effective_q3_2*cos_swing_q3_back + d4_by_effective_q3_2*sin_swing_q3_back_down
-        sin_q3_back_up = d4_by_effective_q3_2*cos_swing_q3_back - a3_by_effective_q3_2*sin_swing_q3_back_down
-        if reach_back > machine_scale_times_free_angle:
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = sqrt(length_q2_squared_back_down) if length_q2_squared_back_down > 0.0 else 1.0
-            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
-            sin_q2_back_down = across_q2_back_down/length_q2_back_down
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = sqrt(length_q2_squared_back_up) if length_q2_squared_back_up > 0.0 else 1.0
-            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
-            sin_q2_back_up = across_q2_back_up/length_q2_back_up
+        refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN  # A1: its turn
+        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach > machine_scale_times_free_angle:
+            arm_along_q2 = effective_q3_2*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
+            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
+            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2_back_down = cos(free_a2)  # its reference where it is free
-            sin_q2_back_down = sin(free_a2)
-            cos_q2_back_up = cos_q2_back_down  # its reference where it is free
-            sin_q2_back_up = sin_q2_back_down
-        refusal_front = 0.0 if sine_square_q3_front >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)/DEGREE  # A1: its turn
-        axis_a2_front_down = offset_a2 + arctan2(sin_q2_front_down, cos_q2_front_down)/DEGREE  # A2: its turn
-        axis_a3_front_down = offset_a3 + arctan2(sin_q3_front_down, cos_q3_front_down)/DEGREE  # A3: its turn
-        refusal_back = 0.0 if sine_square_q3_back >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)/DEGREE  # A1: its turn
-        axis_a2_back_down = offset_a2 + arctan2(sin_q2_back_down, cos_q2_back_down)/DEGREE  # A2: its turn
-        axis_a3_back_down = offset_a3 + arctan2(sin_q3_back_down, cos_q3_back_down)/DEGREE  # A3: its turn
-        axis_a2_front_up = offset_a2 + arctan2(sin_q2_front_up, cos_q2_front_up)/DEGREE  # A2: its turn
-        axis_a3_front_up = offset_a3 + arctan2(sin_q3_front_up, cos_q3_front_up)/DEGREE  # A3: its turn
-        axis_a2_back_up = offset_a2 + arctan2(sin_q2_back_up, cos_q2_back_up)/DEGREE  # A2: its turn
-        axis_a3_back_up = offset_a3 + arctan2(sin_q3_back_up, cos_q3_back_up)/DEGREE  # A3: its turn
+            angle_q2_down = free_a2
+            angle_q2_up = free_a2
+        axis_a2_back_down = offset_a2 + angle_q2_down*RADIAN  # A2: its turn
+        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
+        axis_a3_back_down = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
+        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
+        axis_a3_back_up = offset_a3 + angle_q3*RADIAN  # A3: its turn
         return (
             ((axis_a1_front, axis_a2_front_down, axis_a3_front_down) if refusal_front == 0.0 else None),
             ((axis_a1_back, axis_a2_back_down, axis_a3_back_down) if refusal_back == 0.0 else None),
@@ -398,30 +337,22 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_q3 = a3_by_effective_q3_2*cos_swing_q3 - d4_by_effective_q3_2*sin_swing_q3
-        sin_q3 = a3_by_effective_q3_2*sin_swing_q3 + d4_by_effective_q3_2*cos_swing_q3
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = (
-                sqrt(across_q2*across_q2 + along_q2*along_q2)
-                if across_q2*across_q2 + along_q2*along_q2 > 0.0
-                else 1.0
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
+            arm_along_q2 = -effective_q3_2*sin_swing_q3
+            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
+            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
+            angle_q2 = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(free_a2)  # its reference where it is free
-            sin_q2 = sin(free_a2)
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3)/DEGREE  # A3: its turn
+            angle_q2 = free_a2
+        axis_a2 = offset_a2 + angle_q2*RADIAN  # A2: its turn
+        angle_of_swing_q3 = arctan2(sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
+        axis_a3 = offset_a3 + angle_q3*RADIAN  # A3: its turn
         return (axis_a1, axis_a2, axis_a3)
 
     return Unrolled(every_branch, branches, branch)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -44,7 +44,10 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         ref_a1, ref_a2, _ = reference
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9):
+        if not (
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9
+        ):
             return 2*(2.0,)
         reach = sqrt(x*x + y*y)
         # kept as a product
@@ -60,34 +63,24 @@ def unrolled(k: Constants) -> Unrolled:
         if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
             return 2*(3.0,)
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            arm_across_a1 = link_length_2*sin_a2
+            angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
+            angle_of_x = arctan2(y + 0.0, x + 0.0)
+            angle_a1_right = angle_of_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1_right = cos(free_a1)  # its reference where it is free
-            sin_a1_right = sin(free_a1)
-            cos_a1_left = cos_a1_right  # its reference where it is free
-            sin_a1_left = sin_a1_right
+            angle_a1_right = free_a1
+            angle_a1_left = free_a1
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
+        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2_right = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
         # limits of A1, limits of A2
@@ -98,7 +91,7 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_a2_right <= highest_a2)
             else 3.0
         )
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
@@ -131,32 +124,22 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            arm_across_a1 = link_length_2*sin_a2
+            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_x = arctan2(y, x)
+            angle_a1_right = angle_of_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1_right = cos(free_a1)  # its reference where it is free
-            sin_a1_right = sin(free_a1)
-            cos_a1_left = cos_a1_right  # its reference where it is free
-            sin_a1_left = sin_a1_right
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)/DEGREE  # A1: its turn
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2)/DEGREE  # A2: its turn
+            angle_a1_right = free_a1
+            angle_a1_left = free_a1
+        axis_a1_right = offset_a1 + angle_a1_right*RADIAN  # A1: its turn
+        axis_a2_right = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
         axis_a3 = offset_a3 + z
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + angle_a1_left*RADIAN  # A1: its turn
         axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
         return (
             (axis_a1_right, axis_a2_right, axis_a3),
@@ -182,21 +165,14 @@ def unrolled(k: Constants) -> Unrolled:
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_x = arctan2(y, x)
+            angle_a1 = angle_of_x - angle_of_arm_along_a1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
+            angle_a1 = free_a1
+        axis_a1 = offset_a1 + angle_a1*RADIAN  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
         axis_a3 = offset_a3 + z
         return (axis_a1, axis_a2, axis_a3)
 

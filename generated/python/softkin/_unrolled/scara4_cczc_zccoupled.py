@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -47,7 +47,6 @@ def unrolled(k: Constants) -> Unrolled:
     constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
     pitch_zc_by_360 = pitch_zc/360.0
-    offset_a2_times_2 = 2.0*offset_a2
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -56,10 +55,10 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, _, ref_a4 = reference
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a4) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
             return 2*(2.0,)
         # columns of length one, at right angles
@@ -89,51 +88,36 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            arm_across_a1 = link_length_2*sin_a2
+            angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
+            angle_of_x = arctan2(y + 0.0, x + 0.0)
+            angle_a1_right = angle_of_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1_right = cos(free_a1)  # its reference where it is free
-            sin_a1_right = sin(free_a1)
-            cos_a1_left = cos_a1_right  # its reference where it is free
-            sin_a1_left = sin_a1_right
+            angle_a1_right = free_a1
+            angle_a1_left = free_a1
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
+        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
+        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2_right = offset_a2 + angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        cos_a12_right = cos_a1_right*cos_a2 - sin_a1_right*sin_a2_right
-        sin_a12_right = cos_a1_right*sin_a2_right + cos_a2*sin_a1_right
-        # a4: linear pair in the cosine of the heading and sine of the heading equations
-        cos_a4_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading
-        sin_a4_right = cos_a12_right*sin_heading - cos_heading*sin_a12_right
+        angle_heading = arctan2(heading_across + 0.0, heading_along + 0.0)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        axis_a4_right = offset_a4 + arctan2(sin_a4_right, cos_a4_right + 0.0)/DEGREE  # A4: its turn
+        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        axis_a4_right = offset_a4 + (angle_heading - angle_a1_right - angle_a2)/DEGREE
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
-        a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3_right = z + a4_right*pitch_zc_by_360/DEGREE - a4_right*gear_coupling/DEGREE  # a3: affine in the z equation
-        axis_a3_right = a3_right + offset_a3
+        a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
+        a3 = z + a4*pitch_zc_by_360/DEGREE - a4*gear_coupling/DEGREE  # a3: affine in the z equation
+        axis_a3_right = a3 + offset_a3
         # limits of A1, limits of A2, limits of A3, limits of A4
         refusal_right = (
             0.0
@@ -142,23 +126,19 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_a2_right <= highest_a2) and (axis_a3_right <= highest_a3) and (axis_a4_right <= highest_a4)
             else 3.0
         )
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
+        axis_a2_left = offset_a2 - angle_a2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
-        cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
-        sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
-        # a4: linear pair in the cosine of the heading and sine of the heading equations
-        cos_a4_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading
-        sin_a4_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
-        axis_a4_left = offset_a4 + arctan2(sin_a4_left, cos_a4_left + 0.0)/DEGREE  # A4: its turn
+        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left)/DEGREE
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
-        a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3_left = z + a4_left*pitch_zc_by_360/DEGREE - a4_left*gear_coupling/DEGREE  # a3: affine in the z equation
-        axis_a3_left = a3_left + offset_a3
+        a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
+        a3 = z + a4*pitch_zc_by_360/DEGREE - a4*gear_coupling/DEGREE  # a3: affine in the z equation
+        axis_a3_left = a3 + offset_a3
         # limits of A1, limits of A2, limits of A3, limits of A4
         refusal_left = (
             0.0
@@ -193,53 +173,35 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            arm_across_a1 = link_length_2*sin_a2
+            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_x = arctan2(y, x)
+            angle_a1_right = angle_of_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1_right = cos(free_a1)  # its reference where it is free
-            sin_a1_right = sin(free_a1)
-            cos_a1_left = cos_a1_right  # its reference where it is free
-            sin_a1_left = sin_a1_right
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)/DEGREE  # A1: its turn
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2)/DEGREE  # A2: its turn
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        cos_a12_right = cos_a1_right*cos_a2 - sin_a1_right*sin_a2_right
-        sin_a12_right = cos_a1_right*sin_a2_right + cos_a2*sin_a1_right
-        # a4: linear pair in the cosine of the heading and sine of the heading equations
-        cos_a4_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading
-        sin_a4_right = cos_a12_right*sin_heading - cos_heading*sin_a12_right
-        axis_a4_right = offset_a4 + arctan2(sin_a4_right, cos_a4_right)/DEGREE  # A4: its turn
-        a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3_right = z + a4_right*pitch_zc_by_360/DEGREE - a4_right*gear_coupling/DEGREE  # a3: affine in the z equation
-        axis_a3_right = a3_right + offset_a3
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
-        axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
-        cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
-        sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
-        # a4: linear pair in the cosine of the heading and sine of the heading equations
-        cos_a4_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading
-        sin_a4_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
-        axis_a4_left = offset_a4 + arctan2(sin_a4_left, cos_a4_left)/DEGREE  # A4: its turn
-        a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3_left = z + a4_left*pitch_zc_by_360/DEGREE - a4_left*gear_coupling/DEGREE  # a3: affine in the z equation
-        axis_a3_left = a3_left + offset_a3
+            angle_a1_right = free_a1
+            angle_a1_left = free_a1
+        axis_a1_right = offset_a1 + angle_a1_right*RADIAN  # A1: its turn
+        angle_a2 = arctan2(sin_a2, cos_a2)
+        part_of_axis_a2 = angle_a2*RADIAN
+        axis_a2_right = offset_a2 + part_of_axis_a2  # A2: its turn
+        angle_heading = arctan2(heading_across, heading_along)
+        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        axis_a4_right = offset_a4 + (angle_heading - angle_a1_right - angle_a2)*RADIAN
+        a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
+        a3 = z + a4*pitch_zc_by_360*RADIAN - a4*gear_coupling*RADIAN  # a3: affine in the z equation
+        axis_a3_right = a3 + offset_a3
+        axis_a1_left = offset_a1 + angle_a1_left*RADIAN  # A1: its turn
+        axis_a2_left = offset_a2 - part_of_axis_a2  # A2: its turn
+        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN
+        a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
+        a3 = z + a4*pitch_zc_by_360*RADIAN - a4*gear_coupling*RADIAN  # a3: affine in the z equation
+        axis_a3_left = a3 + offset_a3
         return (
             (axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right),
             (axis_a1_left, axis_a2_left, axis_a3_left, axis_a4_left),
@@ -271,32 +233,20 @@ def unrolled(k: Constants) -> Unrolled:
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_x = arctan2(y, x)
+            angle_a1 = angle_of_x - angle_of_arm_along_a1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
-        heading_divisor = heading_length if heading_length > 1e-11 else 1.0
-        cos_heading = heading_along/heading_divisor
-        sin_heading = heading_across/heading_divisor
-        cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
-        sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
-        # a4: linear pair in the cosine of the heading and sine of the heading equations
-        cos_a4 = cos_a12*cos_heading + sin_a12*sin_heading
-        sin_a4 = cos_a12*sin_heading - cos_heading*sin_a12
-        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4)/DEGREE  # A4: its turn
+            angle_a1 = free_a1
+        axis_a1 = offset_a1 + angle_a1*RADIAN  # A1: its turn
+        angle_a2 = arctan2(sin_a2, cos_a2)
+        axis_a2 = offset_a2 + angle_a2*RADIAN  # A2: its turn
+        angle_heading = arctan2(heading_across, heading_along)
+        # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
+        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2)*RADIAN
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc_by_360/DEGREE - a4*gear_coupling/DEGREE  # a3: affine in the z equation
+        a3 = z + a4*pitch_zc_by_360*RADIAN - a4*gear_coupling*RADIAN  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 

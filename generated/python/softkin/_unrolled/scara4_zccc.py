@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -43,7 +43,6 @@ def unrolled(k: Constants) -> Unrolled:
     scale_a3_squared = scale_a3*scale_a3
     constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
-    offset_a3_times_2 = 2.0*offset_a3
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -52,10 +51,10 @@ def unrolled(k: Constants) -> Unrolled:
         _, ref_a2, ref_a3, ref_a4 = reference
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a2) <= 1e9 and abs(ref_a3) <= 1e9
-            and abs(ref_a4) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a2 <= 1e9
+            and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9
         ):
             return 2*(2.0,)
         # columns of length one, at right angles
@@ -93,43 +92,31 @@ def unrolled(k: Constants) -> Unrolled:
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3.0,)
         cos_a3 = (reach*reach - constant_part)/scale_a3
-        sin_a3_right = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
+        sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2_right = link_length_2*sin_a3_right
-            # a2: linear pair in the x and y equations
-            along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
-            across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-            length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
-            length_a2_right = sqrt(length_a2_squared_right) if length_a2_squared_right > 0.0 else 1.0
-            cos_a2_right = along_a2_right/length_a2_right  # its reference where it is free
-            sin_a2_right = across_a2_right/length_a2_right
-            along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
-            across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
-            length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
-            length_a2_left = sqrt(length_a2_squared_left) if length_a2_squared_left > 0.0 else 1.0
-            cos_a2_left = along_a2_left/length_a2_left  # its reference where it is free
-            sin_a2_left = across_a2_left/length_a2_left
+            arm_across_a2 = link_length_2*sin_a3
+            angle_of_arm_along_a2 = arctan2(arm_across_a2 + 0.0, arm_along_a2 + 0.0)
+            angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
+            angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
+            angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_a2_right = cos(free_a2)  # its reference where it is free
-            sin_a2_right = sin(free_a2)
-            cos_a2_left = cos_a2_right  # its reference where it is free
-            sin_a2_left = sin_a2_right
+            angle_a2_right = free_a2
+            angle_a2_left = free_a2
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
+        axis_a2_right = offset_a2 + angle_a2_right/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
+        angle_a3 = arctan2(sin_a3 + 0.0, cos_a3 + 0.0)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        axis_a3_right = offset_a3 + arctan2(sin_a3_right, cos_a3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3_right = offset_a3 + angle_a3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_right - open_a3 < 179.999999999:
             axis_a3_right = nearest_period(axis_a3_right, open_a3)
-        cos_a23_right = cos_a2_right*cos_a3 - sin_a2_right*sin_a3_right
-        sin_a23_right = cos_a2_right*sin_a3_right + cos_a3*sin_a2_right
-        cos_a4_right = cos_a23_right*cos_heading + sin_a23_right*sin_heading  # a4: what the sum a234 leaves
-        sin_a4_right = cos_a23_right*sin_heading - cos_heading*sin_a23_right
+        angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
-        axis_a4_right = offset_a4 + arctan2(sin_a4_right, cos_a4_right + 0.0)/DEGREE  # A4: its turn
+        # a4: what the sum a234 leaves; A4: its turn
+        axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3)/DEGREE
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
         # limits of A2, limits of A3, limits of A4
@@ -140,17 +127,14 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_a3_right <= highest_a3) and (axis_a4_right <= highest_a4)
             else 3.0
         )
-        axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
+        axis_a2_left = offset_a2 + angle_a2_left/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
-        axis_a3_left = offset_a3_times_2 - axis_a3_right  # A3: its turn
+        axis_a3_left = offset_a3 - angle_a3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_left - open_a3 < 179.999999999:
             axis_a3_left = nearest_period(axis_a3_left, open_a3)
-        cos_a23_left = cos_a2_left*cos_a3 + sin_a2_left*sin_a3_right
-        sin_a23_left = cos_a3*sin_a2_left - cos_a2_left*sin_a3_right
-        cos_a4_left = cos_a23_left*cos_heading + sin_a23_left*sin_heading  # a4: what the sum a234 leaves
-        sin_a4_left = cos_a23_left*sin_heading - cos_heading*sin_a23_left
-        axis_a4_left = offset_a4 + arctan2(sin_a4_left, cos_a4_left + 0.0)/DEGREE  # A4: its turn
+        # a4: what the sum a234 leaves; A4: its turn
+        axis_a4_left = offset_a4 + (angle_a3 + angle_heading - angle_a2_left)/DEGREE
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
         # limits of A2, limits of A3, limits of A4
@@ -190,45 +174,31 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 2*(None,)
+        axis_a1 = offset_a1 + z
         cos_a3 = (reach*reach - constant_part)/scale_a3
-        sin_a3_right = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
+        sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2_right = link_length_2*sin_a3_right
-            # a2: linear pair in the x and y equations
-            along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
-            across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-            length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
-            length_a2_right = sqrt(length_a2_squared_right) if length_a2_squared_right > 0.0 else 1.0
-            cos_a2_right = along_a2_right/length_a2_right  # its reference where it is free
-            sin_a2_right = across_a2_right/length_a2_right
-            along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
-            across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
-            length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
-            length_a2_left = sqrt(length_a2_squared_left) if length_a2_squared_left > 0.0 else 1.0
-            cos_a2_left = along_a2_left/length_a2_left  # its reference where it is free
-            sin_a2_left = across_a2_left/length_a2_left
+            arm_across_a2 = link_length_2*sin_a3
+            angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)
+            angle_of_wrist_x = arctan2(wrist_y, wrist_x)
+            angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
+            angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_a2_right = cos(free_a2)  # its reference where it is free
-            sin_a2_right = sin(free_a2)
-            cos_a2_left = cos_a2_right  # its reference where it is free
-            sin_a2_left = sin_a2_right
-        axis_a1 = offset_a1 + z
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)/DEGREE  # A2: its turn
-        axis_a3_right = offset_a3 + arctan2(sin_a3_right, cos_a3)/DEGREE  # A3: its turn
-        cos_a23_right = cos_a2_right*cos_a3 - sin_a2_right*sin_a3_right
-        sin_a23_right = cos_a2_right*sin_a3_right + cos_a3*sin_a2_right
-        cos_a4_right = cos_a23_right*cos_heading + sin_a23_right*sin_heading  # a4: what the sum a234 leaves
-        sin_a4_right = cos_a23_right*sin_heading - cos_heading*sin_a23_right
-        axis_a4_right = offset_a4 + arctan2(sin_a4_right, cos_a4_right)/DEGREE  # A4: its turn
-        axis_a2_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)/DEGREE  # A2: its turn
-        axis_a3_left = offset_a3_times_2 - axis_a3_right  # A3: its turn
-        cos_a23_left = cos_a2_left*cos_a3 + sin_a2_left*sin_a3_right
-        sin_a23_left = cos_a3*sin_a2_left - cos_a2_left*sin_a3_right
-        cos_a4_left = cos_a23_left*cos_heading + sin_a23_left*sin_heading  # a4: what the sum a234 leaves
-        sin_a4_left = cos_a23_left*sin_heading - cos_heading*sin_a23_left
-        axis_a4_left = offset_a4 + arctan2(sin_a4_left, cos_a4_left)/DEGREE  # A4: its turn
+            angle_a2_right = free_a2
+            angle_a2_left = free_a2
+        axis_a2_right = offset_a2 + angle_a2_right*RADIAN  # A2: its turn
+        angle_a3 = arctan2(sin_a3, cos_a3)
+        part_of_axis_a3 = angle_a3*RADIAN
+        axis_a3_right = offset_a3 + part_of_axis_a3  # A3: its turn
+        angle_heading = arctan2(sin_heading, cos_heading)
+        # a4: what the sum a234 leaves; A4: its turn
+        axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3)*RADIAN
+        axis_a2_left = offset_a2 + angle_a2_left*RADIAN  # A2: its turn
+        axis_a3_left = offset_a3 - part_of_axis_a3  # A3: its turn
+        # a4: what the sum a234 leaves; A4: its turn
+        axis_a4_left = offset_a4 + (angle_a3 + angle_heading - angle_a2_left)*RADIAN
         return (
             (axis_a1, axis_a2_right, axis_a3_right, axis_a4_right),
             (axis_a1, axis_a2_left, axis_a3_left, axis_a4_left),
@@ -259,32 +229,24 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return None
+        axis_a1 = offset_a1 + z
         cos_a3 = (reach*reach - constant_part)/scale_a3
         sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
         if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
-            along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
-            across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-            length_a2 = (
-                sqrt(across_a2*across_a2 + along_a2*along_a2)
-                if across_a2*across_a2 + along_a2*along_a2 > 0.0
-                else 1.0
-            )
-            cos_a2 = along_a2/length_a2  # its reference where it is free
-            sin_a2 = across_a2/length_a2
+            angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)
+            angle_of_wrist_x = arctan2(wrist_y, wrist_x)
+            angle_a2 = angle_of_wrist_x - angle_of_arm_along_a2
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_a2 = cos(free_a2)  # its reference where it is free
-            sin_a2 = sin(free_a2)
-        axis_a1 = offset_a1 + z
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)/DEGREE  # A3: its turn
-        cos_a23 = cos_a2*cos_a3 - sin_a2*sin_a3
-        sin_a23 = cos_a2*sin_a3 + cos_a3*sin_a2
-        cos_a4 = cos_a23*cos_heading + sin_a23*sin_heading  # a4: what the sum a234 leaves
-        sin_a4 = cos_a23*sin_heading - cos_heading*sin_a23
-        axis_a4 = offset_a4 + arctan2(sin_a4, cos_a4)/DEGREE  # A4: its turn
+            angle_a2 = free_a2
+        axis_a2 = offset_a2 + angle_a2*RADIAN  # A2: its turn
+        angle_a3 = arctan2(sin_a3, cos_a3)
+        axis_a3 = offset_a3 + angle_a3*RADIAN  # A3: its turn
+        angle_heading = arctan2(sin_heading, cos_heading)
+        # a4: what the sum a234 leaves; A4: its turn
+        axis_a4 = offset_a4 + (angle_heading - angle_a2 - angle_a3)*RADIAN
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
     return Unrolled(every_branch, branches, branch)

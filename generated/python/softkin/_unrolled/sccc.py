@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -56,10 +56,10 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, ref_a3 = reference
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(r11) <= 1e9 and abs(r12) <= 1e9
-            and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9 and abs(r23) <= 1e9 and abs(r31) <= 1e9
-            and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
+            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
+            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return 2*(2.0,)
         # columns of length one, at right angles
@@ -96,35 +96,25 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
-            # a1: linear pair in the x and y equations
-            along_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
-            across_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            arm_across_a1 = link_length_2*sin_a2
+            angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
+            angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
+            angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1_right = cos(free_a1)  # its reference where it is free
-            sin_a1_right = sin(free_a1)
-            cos_a1_left = cos_a1_right  # its reference where it is free
-            sin_a1_left = sin_a1_right
+            angle_a1_right = free_a1
+            angle_a1_left = free_a1
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right + 0.0)/DEGREE  # A1: its turn
+        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
+        angle_a2 = arctan2(sin_a2 + 0.0, cos_a2 + 0.0)
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left + 0.0)/DEGREE  # A1: its turn
+        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
@@ -135,15 +125,15 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
-            open_a2_right = offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: where its turn is open
-            open_a2_left = offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: where its turn is open
-        # A2: its turn
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2 + 0.0)/DEGREE - coupling_12*motor_a1_right/DEGREE
+            part_of_open_a2 = offset_a2 + free_a2/DEGREE
+            open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right/DEGREE  # A2: where its turn is open
+            open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left/DEGREE  # A2: where its turn is open
+        axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
+        angle_heading = arctan2(sin_heading + 0.0, cos_heading + 0.0)
         motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
-        # A2: its turn
-        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2 + 0.0)/DEGREE - coupling_12*motor_a1_left/DEGREE
+        axis_a2_left = offset_a2 - angle_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
@@ -155,56 +145,49 @@ def unrolled(k: Constants) -> Unrolled:
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
             free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
+            part_of_open_a3 = offset_a3 + free_a3/DEGREE
             # A3: where its turn is open
-            open_a3_right = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE
+            open_a3_right = part_of_open_a3 + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE
             # A3: where its turn is open
-            open_a3_left = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE
-        cos_a12_right = cos_a1_right*cos_a2 - sin_a1_right*sin_a2_right
-        sin_a12_right = cos_a1_right*sin_a2_right + cos_a2*sin_a1_right
-        cos_a3_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading  # a3: what the sum a123 leaves
-        sin_a3_right = cos_a12_right*sin_heading - cos_heading*sin_a12_right
-        # A3: its turn
+            open_a3_left = part_of_open_a3 + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE
+        # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = (
-            offset_a3 + arctan2(sin_a3_right, cos_a3_right + 0.0)/DEGREE
+            offset_a3 + (angle_heading - angle_a1_right - angle_a2)/DEGREE
             - (coupling_13*motor_a1_right + coupling_23*motor_a2_right)/DEGREE
         )
         if not -180.000000001 <= axis_a3_right - open_a3_right < 179.999999999:
             axis_a3_right = nearest_period(axis_a3_right, open_a3_right)
-        limit_a2_right = motor_a2_right + coupling_12*motor_a1_right
-        limit_value_joint_2_right = limit_a2_right/DEGREE  # joint 2
-        limit_motor_a3_right = DEGREE*(axis_a3_right - offset_a3)
-        limit_a3_right = limit_motor_a3_right + coupling_13*motor_a1_right + coupling_23*motor_a2_right
-        limit_value_joint_3_right = limit_a3_right/DEGREE  # joint 3
+        limit_a2 = motor_a2_right + coupling_12*motor_a1_right
+        limit_value_joint_2 = limit_a2/DEGREE  # joint 2
+        limit_motor_a3 = DEGREE*(axis_a3_right - offset_a3)
+        limit_a3 = limit_motor_a3 + coupling_13*motor_a1_right + coupling_23*motor_a2_right
+        limit_value_joint_3 = limit_a3/DEGREE  # joint 3
         # limits of A1, limits of A2, limits of A3, limits of joint 2, limits of joint 3
         refusal_right = (
             0.0
-            if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (axis_a3_right >= lowest_a3) and (limit_value_joint_2_right >= lowest_joint_2) and (limit_value_joint_3_right >= lowest_joint_3) and (axis_a1_right <= highest_a1) and (axis_a2_right <= highest_a2) and (axis_a3_right <= highest_a3) and (
-                limit_value_joint_2_right <= highest_joint_2
-            ) and (limit_value_joint_3_right <= highest_joint_3)
+            if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (axis_a3_right >= lowest_a3) and (limit_value_joint_2 >= lowest_joint_2) and (limit_value_joint_3 >= lowest_joint_3) and (axis_a1_right <= highest_a1) and (axis_a2_right <= highest_a2) and (axis_a3_right <= highest_a3) and (
+                limit_value_joint_2 <= highest_joint_2
+            ) and (limit_value_joint_3 <= highest_joint_3)
             else 3.0
         )
-        cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
-        sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
-        cos_a3_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading  # a3: what the sum a123 leaves
-        sin_a3_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
-        # A3: its turn
+        # a3: what the sum a123 leaves; A3: its turn
         axis_a3_left = (
-            offset_a3 + arctan2(sin_a3_left, cos_a3_left + 0.0)/DEGREE
+            offset_a3 + (angle_a2 + angle_heading - angle_a1_left)/DEGREE
             - (coupling_13*motor_a1_left + coupling_23*motor_a2_left)/DEGREE
         )
         if not -180.000000001 <= axis_a3_left - open_a3_left < 179.999999999:
             axis_a3_left = nearest_period(axis_a3_left, open_a3_left)
-        limit_a2_left = motor_a2_left + coupling_12*motor_a1_left
-        limit_value_joint_2_left = limit_a2_left/DEGREE  # joint 2
-        limit_motor_a3_left = DEGREE*(axis_a3_left - offset_a3)
-        limit_a3_left = limit_motor_a3_left + coupling_13*motor_a1_left + coupling_23*motor_a2_left
-        limit_value_joint_3_left = limit_a3_left/DEGREE  # joint 3
+        limit_a2 = motor_a2_left + coupling_12*motor_a1_left
+        limit_value_joint_2 = limit_a2/DEGREE  # joint 2
+        limit_motor_a3 = DEGREE*(axis_a3_left - offset_a3)
+        limit_a3 = limit_motor_a3 + coupling_13*motor_a1_left + coupling_23*motor_a2_left
+        limit_value_joint_3 = limit_a3/DEGREE  # joint 3
         # limits of A1, limits of A2, limits of A3, limits of joint 2, limits of joint 3
         refusal_left = (
             0.0
-            if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (axis_a3_left >= lowest_a3) and (limit_value_joint_2_left >= lowest_joint_2) and (limit_value_joint_3_left >= lowest_joint_3) and (axis_a1_left <= highest_a1) and (axis_a2_left <= highest_a2) and (axis_a3_left <= highest_a3) and (
-                limit_value_joint_2_left <= highest_joint_2
-            ) and (limit_value_joint_3_left <= highest_joint_3)
+            if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (axis_a3_left >= lowest_a3) and (limit_value_joint_2 >= lowest_joint_2) and (limit_value_joint_3 >= lowest_joint_3) and (axis_a1_left <= highest_a1) and (axis_a2_left <= highest_a2) and (axis_a3_left <= highest_a3) and (
+                limit_value_joint_2 <= highest_joint_2
+            ) and (limit_value_joint_3 <= highest_joint_3)
             else 3.0
         )
         return (
@@ -240,56 +223,38 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2_right = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
-            # a1: linear pair in the x and y equations
-            along_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
-            across_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = sqrt(length_a1_squared_right) if length_a1_squared_right > 0.0 else 1.0
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = sqrt(length_a1_squared_left) if length_a1_squared_left > 0.0 else 1.0
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
+            arm_across_a1 = link_length_2*sin_a2
+            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_wrist_x = arctan2(wrist_y, wrist_x)
+            angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
+            angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1_right = cos(free_a1)  # its reference where it is free
-            sin_a1_right = sin(free_a1)
-            cos_a1_left = cos_a1_right  # its reference where it is free
-            sin_a1_left = sin_a1_right
-        axis_a1_right = offset_a1 + arctan2(sin_a1_right, cos_a1_right)/DEGREE  # A1: its turn
-        motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
-        # A2: its turn
-        axis_a2_right = offset_a2 + arctan2(sin_a2_right, cos_a2)/DEGREE - coupling_12*motor_a1_right/DEGREE
-        cos_a12_right = cos_a1_right*cos_a2 - sin_a1_right*sin_a2_right
-        sin_a12_right = cos_a1_right*sin_a2_right + cos_a2*sin_a1_right
-        cos_a3_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading  # a3: what the sum a123 leaves
-        sin_a3_right = cos_a12_right*sin_heading - cos_heading*sin_a12_right
-        motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
-        # A3: its turn
+            angle_a1_right = free_a1
+            angle_a1_left = free_a1
+        axis_a1_right = offset_a1 + angle_a1_right*RADIAN  # A1: its turn
+        angle_a2 = arctan2(sin_a2, cos_a2)
+        part_of_axis_a2 = angle_a2*RADIAN
+        motor_a1 = DEGREE*(axis_a1_right - offset_a1)
+        axis_a2_right = offset_a2 + part_of_axis_a2 - coupling_12*motor_a1*RADIAN  # A2: its turn
+        angle_heading = arctan2(sin_heading, cos_heading)
+        motor_a2 = DEGREE*(axis_a2_right - offset_a2)
+        # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = (
-            offset_a3 + arctan2(sin_a3_right, cos_a3_right)/DEGREE
-            - (coupling_13*motor_a1_right + coupling_23*motor_a2_right)/DEGREE
+            offset_a3 + (angle_heading - angle_a1_right - angle_a2)*RADIAN
+            - (coupling_13*motor_a1 + coupling_23*motor_a2)*RADIAN
         )
-        axis_a1_left = offset_a1 + arctan2(sin_a1_left, cos_a1_left)/DEGREE  # A1: its turn
-        motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
-        # A2: its turn
-        axis_a2_left = offset_a2 + arctan2(-sin_a2_right, cos_a2)/DEGREE - coupling_12*motor_a1_left/DEGREE
-        cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
-        sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
-        cos_a3_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading  # a3: what the sum a123 leaves
-        sin_a3_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
-        motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
-        # A3: its turn
+        axis_a1_left = offset_a1 + angle_a1_left*RADIAN  # A1: its turn
+        motor_a1 = DEGREE*(axis_a1_left - offset_a1)
+        axis_a2_left = offset_a2 - part_of_axis_a2 - coupling_12*motor_a1*RADIAN  # A2: its turn
+        motor_a2 = DEGREE*(axis_a2_left - offset_a2)
+        # a3: what the sum a123 leaves; A3: its turn
         axis_a3_left = (
-            offset_a3 + arctan2(sin_a3_left, cos_a3_left)/DEGREE
-            - (coupling_13*motor_a1_left + coupling_23*motor_a2_left)/DEGREE
+            offset_a3 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN
+            - (coupling_13*motor_a1 + coupling_23*motor_a2)*RADIAN
         )
         return (
             (axis_a1_right, axis_a2_right, axis_a3_right),
@@ -329,29 +294,23 @@ def unrolled(k: Constants) -> Unrolled:
         if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-            length_a1 = (
-                sqrt(across_a1*across_a1 + along_a1*along_a1)
-                if across_a1*across_a1 + along_a1*along_a1 > 0.0
-                else 1.0
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
+            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_wrist_x = arctan2(wrist_y, wrist_x)
+            angle_a1 = angle_of_wrist_x - angle_of_arm_along_a1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_a1 = cos(free_a1)  # its reference where it is free
-            sin_a1 = sin(free_a1)
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
+            angle_a1 = free_a1
+        axis_a1 = offset_a1 + angle_a1*RADIAN  # A1: its turn
+        angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
-        cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
-        sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
-        cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
-        sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
+        axis_a2 = offset_a2 + angle_a2*RADIAN - coupling_12*motor_a1*RADIAN  # A2: its turn
+        angle_heading = arctan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        # A3: its turn
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE
+        # a3: what the sum a123 leaves; A3: its turn
+        axis_a3 = (
+            offset_a3 + (angle_heading - angle_a1 - angle_a2)*RADIAN
+            - (coupling_13*motor_a1 + coupling_23*motor_a2)*RADIAN
+        )
         return (axis_a1, axis_a2, axis_a3)
 
     return Unrolled(every_branch, branches, branch)

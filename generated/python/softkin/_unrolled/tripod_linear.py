@@ -32,17 +32,17 @@ def unrolled(k: Constants) -> Unrolled:
     outer_radius = k.outer_radius
     sin_max_angle_ball_joint = k.sin_max_angle_ball_joint
     sin_rail_angle = k.sin_rail_angle
-    inner_radius_minus_outer_radius = inner_radius - outer_radius
+    arm_length_squared = arm_length*arm_length
     cos_rail_angle_squared = cos_rail_angle*cos_rail_angle
+    inner_radius_minus_outer_radius = inner_radius - outer_radius
     sin_rail_angle_squared = sin_rail_angle*sin_rail_angle
     constant_part = 2.0*cos_rail_angle*sin_rail_angle
-    arm_length_squared = arm_length*arm_length
     arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
     constant_part_2 = 0.5*inner_radius - 0.5*outer_radius
-    constant_part_3 = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius
     sin_rail_angle_squared_by_4 = 0.25*sin_rail_angle*sin_rail_angle
-    sin_rail_angle_squared_times_3_by_4 = 0.75*sin_rail_angle*sin_rail_angle
     cos_rail_angle_times_sin_rail_angle = cos_rail_angle*sin_rail_angle
+    constant_part_3 = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius
+    sin_rail_angle_squared_times_3_by_4 = 0.75*sin_rail_angle*sin_rail_angle
     constant_part_4 = 0.5*root(3.0)*sin_rail_angle*sin_rail_angle
     constant_part_5 = root(3.0)*cos_rail_angle*sin_rail_angle
     constant_part_6 = 0.5/arm_length
@@ -55,25 +55,30 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return 8*(2.0,)
+        arm_length_squared_minus_z_squared = arm_length_squared - z*z
+        part_of_root_square_a1 = arm_length_squared_minus_z_squared + z*z*cos_rail_angle_squared
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + constant_part*span_1_x*z + z*z*cos_rail_angle_squared
-            + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y - z*z
+            part_of_root_square_a1 + constant_part*span_1_x*z + span_1_x*span_1_x*sin_rail_angle_squared
+            - span_1_x*span_1_x - y*y
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
             return 8*(3.0,)
         span_2_x = constant_part_2 + x  # rod 2
+        part_of_root_square_a1_minus_span_2_x_squared = part_of_root_square_a1 - span_2_x*span_2_x
+        part_of_root_square_a2 = (
+            part_of_root_square_a1_minus_span_2_x_squared + span_2_x*span_2_x*sin_rail_angle_squared_by_4
+        )
+        part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle - part_of_root_square_a2
         span_2_y = y - constant_part_3  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + constant_part_5*span_2_y*z + z*z*cos_rail_angle_squared
-            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
-            - span_2_x*span_2_x - span_2_y*span_2_y - z*z - constant_part_4*span_2_x*span_2_y
-            - span_2_x*z*cos_rail_angle_times_sin_rail_angle
+            constant_part_5*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
+            - part_of_root_square_a2_2 - span_2_y*span_2_y - constant_part_4*span_2_x*span_2_y
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding):
@@ -81,10 +86,8 @@ def unrolled(k: Constants) -> Unrolled:
         span_3_y = constant_part_3 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + constant_part_4*span_2_x*span_3_y + z*z*cos_rail_angle_squared
-            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4
-            - span_2_x*span_2_x - span_3_y*span_3_y - z*z - constant_part_5*span_3_y*z
-            - span_2_x*z*cos_rail_angle_times_sin_rail_angle
+            constant_part_4*span_2_x*span_3_y + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4
+            - part_of_root_square_a2_2 - span_3_y*span_3_y - constant_part_5*span_3_y*z
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
@@ -98,73 +101,83 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
-        middle_a1 = z*cos_rail_angle + span_1_x*sin_rail_angle
-        a1_below = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0) - middle_a1
-        middle_a2 = span_2_x*sin_rail_angle_by_2 - constant_part_times_sin_rail_angle_by_2*span_2_y - z*cos_rail_angle
-        a2_below = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x_below = a2_below*sin_rail_angle_by_2 - constant_part_2  # rod 2
-        rod_2_x_below = x - pivot_2_x_below
-        pivot_2_y_below = constant_part_3 - a2_below*constant_part_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y_below = y - pivot_2_y_below
-        pivot_2_z_below = -a2_below*cos_rail_angle  # rod 2
-        rod_2_z_below = z - pivot_2_z_below
-        middle_a3 = constant_part_times_sin_rail_angle_by_2*span_3_y + span_2_x*sin_rail_angle_by_2 - z*cos_rail_angle
-        a3_below = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x_below = a3_below*sin_rail_angle_by_2 - constant_part_2  # rod 3
-        rod_3_x_below = x - pivot_3_x_below
-        pivot_3_y_below = a3_below*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
-        rod_3_y_below = y - pivot_3_y_below
-        pivot_3_z_below = -a3_below*cos_rail_angle  # rod 3
-        rod_3_z_below = z - pivot_3_z_below
-        axis_a3_below = a3_below + offset_a3
-        axis_a2_below = a2_below + offset_a2
-        axis_a1_below = a1_below + offset_a1
-        a2_above = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x_above = a2_above*sin_rail_angle_by_2 - constant_part_2  # rod 2
-        rod_2_x_above = x - pivot_2_x_above
-        pivot_2_y_above = constant_part_3 - a2_above*constant_part_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y_above = y - pivot_2_y_above
-        pivot_2_z_above = -a2_above*cos_rail_angle  # rod 2
-        rod_2_z_above = z - pivot_2_z_above
-        axis_a2_above = a2_above + offset_a2
-        a3_above = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x_above = a3_above*sin_rail_angle_by_2 - constant_part_2  # rod 3
-        rod_3_x_above = x - pivot_3_x_above
-        pivot_3_y_above = a3_above*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
-        rod_3_y_above = y - pivot_3_y_above
-        pivot_3_z_above = -a3_above*cos_rail_angle  # rod 3
-        rod_3_z_above = z - pivot_3_z_above
-        axis_a3_above = a3_above + offset_a3
+        cos_rail_angle_times_z = z*cos_rail_angle
+        part_of_middle_a2 = cos_rail_angle_times_z - span_2_x*sin_rail_angle_by_2
+        middle_a2 = -part_of_middle_a2 - constant_part_times_sin_rail_angle_by_2*span_2_y
+        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
+        rod_2_x_below = x - pivot_2_x
+        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        rod_2_z_below = z - pivot_2_z
+        middle_a3 = constant_part_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
+        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
+        pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
+        rod_3_x_below = x - pivot_3_x
+        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        rod_3_z_below = z - pivot_3_z
+        part_of_type2_rods_coplanar = rod_2_x_below*rod_3_z_below*y - rod_2_z_below*rod_3_x_below*y
+        middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
+        a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0) - middle_a1
+        pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
+        rod_2_y_below = y - pivot_2_y
+        pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
+        rod_3_y_below = y - pivot_3_y
+        axis_a3_below = a3 + offset_a3
+        axis_a2_below = a2 + offset_a2
+        axis_a1_below = a1 + offset_a1
+        a3 = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
+        pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
+        rod_3_x_above = x - pivot_3_x
+        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        rod_3_z_above = z - pivot_3_z
+        part_of_type2_rods_coplanar_below_above_below = rod_2_x_below*rod_3_z_above*y - rod_2_z_below*rod_3_x_above*y
+        pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
+        rod_3_y_above = y - pivot_3_y
+        axis_a3_above = a3 + offset_a3
+        a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
+        rod_2_x_above = x - pivot_2_x
+        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        rod_2_z_above = z - pivot_2_z
+        part_of_type2_rods_coplanar_below_above_below_above_below_above_2 = (
+            rod_2_x_above*rod_3_z_below*y - rod_2_z_above*rod_3_x_below*y
+        )
+        pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
+        rod_2_y_above = y - pivot_2_y
+        axis_a2_above = a2 + offset_a2
+        part_of_type2_rods_coplanar_below_above_below_above_below_above_3 = (
+            rod_2_x_above*rod_3_z_above*y - rod_2_z_above*rod_3_x_above*y
+        )
         if axis_a1_below >= lowest_a1 and axis_a1_below <= highest_a1:
-            pivot_1_x_below = inner_radius_minus_outer_radius - a1_below*sin_rail_angle  # rod 1
-            rod_1_x_below = x - pivot_1_x_below
-            pivot_1_z_below = -a1_below*cos_rail_angle  # rod 1
-            rod_1_z_below = z - pivot_1_z_below
+            pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+            rod_1_x = x - pivot_1_x
+            pivot_1_z = -a1*cos_rail_angle  # rod 1
+            rod_1_z = z - pivot_1_z
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_below_below_below = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_below*rod_2_y_below*rod_3_z_below + rod_1_z_below*rod_2_x_below*rod_3_y_below
-                            + rod_2_z_below*rod_3_x_below*y - rod_1_x_below*rod_2_z_below*rod_3_y_below
-                            - rod_1_z_below*rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_z_below*y
+                    type2_rods_coplanar_below_below = (
+                        (
+                            rod_1_x*rod_2_y_below*rod_3_z_below + rod_1_z*rod_2_x_below*rod_3_y_below
+                            - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_below*rod_3_y_below
+                            - rod_1_z*rod_2_y_below*rod_3_x_below
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_below_below_below_2 = 0.0 if type2_rods_coplanar_below_below_below >= min_type2_margin else 3.0
+                    refusal_below_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
                 else:
                     refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_below_below_above = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_below*rod_2_y_below*rod_3_z_above + rod_1_z_below*rod_2_x_below*rod_3_y_above
-                            + rod_2_z_below*rod_3_x_above*y - rod_1_x_below*rod_2_z_below*rod_3_y_above
-                            - rod_1_z_below*rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_z_above*y
+                    type2_rods_coplanar_below_above = (
+                        (
+                            rod_1_x*rod_2_y_below*rod_3_z_above + rod_1_z*rod_2_x_below*rod_3_y_above
+                            - part_of_type2_rods_coplanar_below_above_below - rod_1_x*rod_2_z_below*rod_3_y_above
+                            - rod_1_z*rod_2_y_below*rod_3_x_above
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_below_below_above_2 = 0.0 if type2_rods_coplanar_below_below_above >= min_type2_margin else 3.0
+                    refusal_below_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
                 else:
                     refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             else:
@@ -172,29 +185,29 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_below_above_below = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_below*rod_2_y_above*rod_3_z_below + rod_1_z_below*rod_2_x_above*rod_3_y_below
-                            + rod_2_z_above*rod_3_x_below*y - rod_1_x_below*rod_2_z_above*rod_3_y_below
-                            - rod_1_z_below*rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_z_below*y
+                    type2_rods_coplanar_above_below = (
+                        (
+                            rod_1_x*rod_2_y_above*rod_3_z_below + rod_1_z*rod_2_x_above*rod_3_y_below
+                            - part_of_type2_rods_coplanar_below_above_below_above_below_above_2
+                            - rod_1_x*rod_2_z_above*rod_3_y_below - rod_1_z*rod_2_y_above*rod_3_x_below
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_below_above_below_2 = 0.0 if type2_rods_coplanar_below_above_below >= min_type2_margin else 3.0
+                    refusal_below_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
                 else:
                     refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_below_above_above = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_below*rod_2_y_above*rod_3_z_above + rod_1_z_below*rod_2_x_above*rod_3_y_above
-                            + rod_2_z_above*rod_3_x_above*y - rod_1_x_below*rod_2_z_above*rod_3_y_above
-                            - rod_1_z_below*rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_z_above*y
+                    type2_rods_coplanar_above_above = (
+                        (
+                            rod_1_x*rod_2_y_above*rod_3_z_above + rod_1_z*rod_2_x_above*rod_3_y_above
+                            - part_of_type2_rods_coplanar_below_above_below_above_below_above_3
+                            - rod_1_x*rod_2_z_above*rod_3_y_above - rod_1_z*rod_2_y_above*rod_3_x_above
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_below_above_above_2 = 0.0 if type2_rods_coplanar_below_above_above >= min_type2_margin else 3.0
+                    refusal_below_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
                 else:
                     refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             else:
@@ -202,41 +215,41 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
         else:
             refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-        a1_above = -middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        axis_a1_above = a1_above + offset_a1
+        a1 = -middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        axis_a1_above = a1 + offset_a1
         if axis_a1_above >= lowest_a1 and axis_a1_above <= highest_a1:
-            pivot_1_x_above = inner_radius_minus_outer_radius - a1_above*sin_rail_angle  # rod 1
-            rod_1_x_above = x - pivot_1_x_above
-            pivot_1_z_above = -a1_above*cos_rail_angle  # rod 1
-            rod_1_z_above = z - pivot_1_z_above
+            pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+            rod_1_x = x - pivot_1_x
+            pivot_1_z = -a1*cos_rail_angle  # rod 1
+            rod_1_z = z - pivot_1_z
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_above_below_below = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_above*rod_2_y_below*rod_3_z_below + rod_1_z_above*rod_2_x_below*rod_3_y_below
-                            + rod_2_z_below*rod_3_x_below*y - rod_1_x_above*rod_2_z_below*rod_3_y_below
-                            - rod_1_z_above*rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_z_below*y
+                    type2_rods_coplanar_below_below = (
+                        (
+                            rod_1_x*rod_2_y_below*rod_3_z_below + rod_1_z*rod_2_x_below*rod_3_y_below
+                            - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_below*rod_3_y_below
+                            - rod_1_z*rod_2_y_below*rod_3_x_below
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_above_below_below_2 = 0.0 if type2_rods_coplanar_above_below_below >= min_type2_margin else 3.0
+                    refusal_above_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
                 else:
                     refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_above_below_above = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_above*rod_2_y_below*rod_3_z_above + rod_1_z_above*rod_2_x_below*rod_3_y_above
-                            + rod_2_z_below*rod_3_x_above*y - rod_1_x_above*rod_2_z_below*rod_3_y_above
-                            - rod_1_z_above*rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_z_above*y
+                    type2_rods_coplanar_below_above = (
+                        (
+                            rod_1_x*rod_2_y_below*rod_3_z_above + rod_1_z*rod_2_x_below*rod_3_y_above
+                            - part_of_type2_rods_coplanar_below_above_below - rod_1_x*rod_2_z_below*rod_3_y_above
+                            - rod_1_z*rod_2_y_below*rod_3_x_above
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_above_below_above_2 = 0.0 if type2_rods_coplanar_above_below_above >= min_type2_margin else 3.0
+                    refusal_above_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
                 else:
                     refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             else:
@@ -244,29 +257,29 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_above_above_below = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_above*rod_2_y_above*rod_3_z_below + rod_1_z_above*rod_2_x_above*rod_3_y_below
-                            + rod_2_z_above*rod_3_x_below*y - rod_1_x_above*rod_2_z_above*rod_3_y_below
-                            - rod_1_z_above*rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_z_below*y
+                    type2_rods_coplanar_above_below = (
+                        (
+                            rod_1_x*rod_2_y_above*rod_3_z_below + rod_1_z*rod_2_x_above*rod_3_y_below
+                            - part_of_type2_rods_coplanar_below_above_below_above_below_above_2
+                            - rod_1_x*rod_2_z_above*rod_3_y_below - rod_1_z*rod_2_y_above*rod_3_x_below
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_above_above_below_2 = 0.0 if type2_rods_coplanar_above_above_below >= min_type2_margin else 3.0
+                    refusal_above_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
                 else:
                     refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_above_above_above = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_above*rod_2_y_above*rod_3_z_above + rod_1_z_above*rod_2_x_above*rod_3_y_above
-                            + rod_2_z_above*rod_3_x_above*y - rod_1_x_above*rod_2_z_above*rod_3_y_above
-                            - rod_1_z_above*rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_z_above*y
+                    type2_rods_coplanar_above_above = (
+                        (
+                            rod_1_x*rod_2_y_above*rod_3_z_above + rod_1_z*rod_2_x_above*rod_3_y_above
+                            - part_of_type2_rods_coplanar_below_above_below_above_below_above_3
+                            - rod_1_x*rod_2_z_above*rod_3_y_above - rod_1_z*rod_2_y_above*rod_3_x_above
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_above_above_above_2 = 0.0 if type2_rods_coplanar_above_above_above >= min_type2_margin else 3.0
+                    refusal_above_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
                 else:
                     refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             else:
@@ -274,8 +287,8 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
         else:
             refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
         return (
             (
@@ -323,23 +336,28 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
+        arm_length_squared_minus_z_squared = arm_length_squared - z*z
+        part_of_root_square_a1 = arm_length_squared_minus_z_squared + z*z*cos_rail_angle_squared
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + constant_part*span_1_x*z + z*z*cos_rail_angle_squared
-            + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y - z*z
+            part_of_root_square_a1 + constant_part*span_1_x*z + span_1_x*span_1_x*sin_rail_angle_squared
+            - span_1_x*span_1_x - y*y
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
             return 8*(None,)
         span_2_x = constant_part_2 + x  # rod 2
+        part_of_root_square_a1_minus_span_2_x_squared = part_of_root_square_a1 - span_2_x*span_2_x
+        part_of_root_square_a2 = (
+            part_of_root_square_a1_minus_span_2_x_squared + span_2_x*span_2_x*sin_rail_angle_squared_by_4
+        )
+        part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle - part_of_root_square_a2
         span_2_y = y - constant_part_3  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + constant_part_5*span_2_y*z + z*z*cos_rail_angle_squared
-            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
-            - span_2_x*span_2_x - span_2_y*span_2_y - z*z - constant_part_4*span_2_x*span_2_y
-            - span_2_x*z*cos_rail_angle_times_sin_rail_angle
+            constant_part_5*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
+            - part_of_root_square_a2_2 - span_2_y*span_2_y - constant_part_4*span_2_x*span_2_y
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding):
@@ -347,10 +365,8 @@ def unrolled(k: Constants) -> Unrolled:
         span_3_y = constant_part_3 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + constant_part_4*span_2_x*span_3_y + z*z*cos_rail_angle_squared
-            + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4
-            - span_2_x*span_2_x - span_3_y*span_3_y - z*z - constant_part_5*span_3_y*z
-            - span_2_x*z*cos_rail_angle_times_sin_rail_angle
+            constant_part_4*span_2_x*span_3_y + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4
+            - part_of_root_square_a2_2 - span_3_y*span_3_y - constant_part_5*span_3_y*z
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
@@ -364,133 +380,143 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
-        middle_a1 = z*cos_rail_angle + span_1_x*sin_rail_angle
-        a1_below = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0) - middle_a1
-        pivot_1_x_below = inner_radius_minus_outer_radius - a1_below*sin_rail_angle  # rod 1
-        rod_1_x_below = x - pivot_1_x_below
-        pivot_1_z_below = -a1_below*cos_rail_angle  # rod 1
-        rod_1_z_below = z - pivot_1_z_below
-        middle_a2 = span_2_x*sin_rail_angle_by_2 - constant_part_times_sin_rail_angle_by_2*span_2_y - z*cos_rail_angle
-        a2_below = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x_below = a2_below*sin_rail_angle_by_2 - constant_part_2  # rod 2
-        rod_2_x_below = x - pivot_2_x_below
-        pivot_2_y_below = constant_part_3 - a2_below*constant_part_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y_below = y - pivot_2_y_below
-        pivot_2_z_below = -a2_below*cos_rail_angle  # rod 2
-        rod_2_z_below = z - pivot_2_z_below
-        middle_a3 = constant_part_times_sin_rail_angle_by_2*span_3_y + span_2_x*sin_rail_angle_by_2 - z*cos_rail_angle
-        a3_below = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x_below = a3_below*sin_rail_angle_by_2 - constant_part_2  # rod 3
-        rod_3_x_below = x - pivot_3_x_below
-        pivot_3_y_below = a3_below*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
-        rod_3_y_below = y - pivot_3_y_below
-        pivot_3_z_below = -a3_below*cos_rail_angle  # rod 3
-        rod_3_z_below = z - pivot_3_z_below
-        type2_rods_coplanar_below_below_below = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_below*rod_2_y_below*rod_3_z_below + rod_1_z_below*rod_2_x_below*rod_3_y_below
-                + rod_2_z_below*rod_3_x_below*y - rod_1_x_below*rod_2_z_below*rod_3_y_below
-                - rod_1_z_below*rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_z_below*y
+        cos_rail_angle_times_z = z*cos_rail_angle
+        part_of_middle_a2 = cos_rail_angle_times_z - span_2_x*sin_rail_angle_by_2
+        middle_a2 = -part_of_middle_a2 - constant_part_times_sin_rail_angle_by_2*span_2_y
+        a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
+        rod_2_x_below = x - pivot_2_x
+        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        rod_2_z_below = z - pivot_2_z
+        middle_a3 = constant_part_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
+        a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
+        pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
+        rod_3_x_below = x - pivot_3_x
+        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        rod_3_z_below = z - pivot_3_z
+        part_of_type2_rods_coplanar = rod_2_x_below*rod_3_z_below*y - rod_2_z_below*rod_3_x_below*y
+        middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
+        a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0) - middle_a1
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        rod_1_x = x - pivot_1_x
+        pivot_1_z = -a1*cos_rail_angle  # rod 1
+        rod_1_z = z - pivot_1_z
+        pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
+        rod_2_y_below = y - pivot_2_y
+        pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
+        rod_3_y_below = y - pivot_3_y
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_below*rod_3_z_below + rod_1_z*rod_2_x_below*rod_3_y_below
+                - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_below*rod_3_y_below
+                - rod_1_z*rod_2_y_below*rod_3_x_below
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_below = 0.0 if type2_rods_coplanar_below_below_below >= min_type2_margin else 3.0
-        axis_a1_below = a1_below + offset_a1
-        axis_a2_below = a2_below + offset_a2
-        axis_a3_below = a3_below + offset_a3
-        a1_above = -middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x_above = inner_radius_minus_outer_radius - a1_above*sin_rail_angle  # rod 1
-        rod_1_x_above = x - pivot_1_x_above
-        pivot_1_z_above = -a1_above*cos_rail_angle  # rod 1
-        rod_1_z_above = z - pivot_1_z_above
-        type2_rods_coplanar_above_below_below = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_above*rod_2_y_below*rod_3_z_below + rod_1_z_above*rod_2_x_below*rod_3_y_below
-                + rod_2_z_below*rod_3_x_below*y - rod_1_x_above*rod_2_z_below*rod_3_y_below
-                - rod_1_z_above*rod_2_y_below*rod_3_x_below - rod_2_x_below*rod_3_z_below*y
+        refusal_below_below_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a1_below = a1 + offset_a1
+        axis_a2_below = a2 + offset_a2
+        axis_a3_below = a3 + offset_a3
+        a3 = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
+        pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
+        rod_3_x_above = x - pivot_3_x
+        pivot_3_z = -a3*cos_rail_angle  # rod 3
+        rod_3_z_above = z - pivot_3_z
+        part_of_type2_rods_coplanar_below_above_below = rod_2_x_below*rod_3_z_above*y - rod_2_z_below*rod_3_x_above*y
+        pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
+        rod_3_y_above = y - pivot_3_y
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_below*rod_3_z_above + rod_1_z*rod_2_x_below*rod_3_y_above
+                - part_of_type2_rods_coplanar_below_above_below - rod_1_x*rod_2_z_below*rod_3_y_above
+                - rod_1_z*rod_2_y_below*rod_3_x_above
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_below = 0.0 if type2_rods_coplanar_above_below_below >= min_type2_margin else 3.0
-        axis_a1_above = a1_above + offset_a1
-        a2_above = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x_above = a2_above*sin_rail_angle_by_2 - constant_part_2  # rod 2
-        rod_2_x_above = x - pivot_2_x_above
-        pivot_2_y_above = constant_part_3 - a2_above*constant_part_times_sin_rail_angle_by_2  # rod 2
-        rod_2_y_above = y - pivot_2_y_above
-        pivot_2_z_above = -a2_above*cos_rail_angle  # rod 2
-        rod_2_z_above = z - pivot_2_z_above
-        type2_rods_coplanar_below_above_below = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_below*rod_2_y_above*rod_3_z_below + rod_1_z_below*rod_2_x_above*rod_3_y_below
-                + rod_2_z_above*rod_3_x_below*y - rod_1_x_below*rod_2_z_above*rod_3_y_below
-                - rod_1_z_below*rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_z_below*y
+        refusal_below_below_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a3_above = a3 + offset_a3
+        a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
+        rod_2_x_above = x - pivot_2_x
+        pivot_2_z = -a2*cos_rail_angle  # rod 2
+        rod_2_z_above = z - pivot_2_z
+        part_of_type2_rods_coplanar_below_above_below_above_below_above_2 = (
+            rod_2_x_above*rod_3_z_below*y - rod_2_z_above*rod_3_x_below*y
+        )
+        pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
+        rod_2_y_above = y - pivot_2_y
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_above*rod_3_z_below + rod_1_z*rod_2_x_above*rod_3_y_below
+                - part_of_type2_rods_coplanar_below_above_below_above_below_above_2
+                - rod_1_x*rod_2_z_above*rod_3_y_below - rod_1_z*rod_2_y_above*rod_3_x_below
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_below = 0.0 if type2_rods_coplanar_below_above_below >= min_type2_margin else 3.0
-        axis_a2_above = a2_above + offset_a2
-        type2_rods_coplanar_above_above_below = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_above*rod_2_y_above*rod_3_z_below + rod_1_z_above*rod_2_x_above*rod_3_y_below
-                + rod_2_z_above*rod_3_x_below*y - rod_1_x_above*rod_2_z_above*rod_3_y_below
-                - rod_1_z_above*rod_2_y_above*rod_3_x_below - rod_2_x_above*rod_3_z_below*y
+        refusal_below_above_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a2_above = a2 + offset_a2
+        part_of_type2_rods_coplanar_below_above_below_above_below_above_3 = (
+            rod_2_x_above*rod_3_z_above*y - rod_2_z_above*rod_3_x_above*y
+        )
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_above*rod_3_z_above + rod_1_z*rod_2_x_above*rod_3_y_above
+                - part_of_type2_rods_coplanar_below_above_below_above_below_above_3
+                - rod_1_x*rod_2_z_above*rod_3_y_above - rod_1_z*rod_2_y_above*rod_3_x_above
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_below = 0.0 if type2_rods_coplanar_above_above_below >= min_type2_margin else 3.0
-        a3_above = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x_above = a3_above*sin_rail_angle_by_2 - constant_part_2  # rod 3
-        rod_3_x_above = x - pivot_3_x_above
-        pivot_3_y_above = a3_above*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
-        rod_3_y_above = y - pivot_3_y_above
-        pivot_3_z_above = -a3_above*cos_rail_angle  # rod 3
-        rod_3_z_above = z - pivot_3_z_above
-        type2_rods_coplanar_below_below_above = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_below*rod_2_y_below*rod_3_z_above + rod_1_z_below*rod_2_x_below*rod_3_y_above
-                + rod_2_z_below*rod_3_x_above*y - rod_1_x_below*rod_2_z_below*rod_3_y_above
-                - rod_1_z_below*rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_z_above*y
+        refusal_below_above_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        a1 = -middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        rod_1_x = x - pivot_1_x
+        pivot_1_z = -a1*cos_rail_angle  # rod 1
+        rod_1_z = z - pivot_1_z
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_below*rod_3_z_below + rod_1_z*rod_2_x_below*rod_3_y_below
+                - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_below*rod_3_y_below
+                - rod_1_z*rod_2_y_below*rod_3_x_below
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_above = 0.0 if type2_rods_coplanar_below_below_above >= min_type2_margin else 3.0
-        axis_a3_above = a3_above + offset_a3
-        type2_rods_coplanar_above_below_above = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_above*rod_2_y_below*rod_3_z_above + rod_1_z_above*rod_2_x_below*rod_3_y_above
-                + rod_2_z_below*rod_3_x_above*y - rod_1_x_above*rod_2_z_below*rod_3_y_above
-                - rod_1_z_above*rod_2_y_below*rod_3_x_above - rod_2_x_below*rod_3_z_above*y
+        refusal_above_below_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a1_above = a1 + offset_a1
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_below*rod_3_z_above + rod_1_z*rod_2_x_below*rod_3_y_above
+                - part_of_type2_rods_coplanar_below_above_below - rod_1_x*rod_2_z_below*rod_3_y_above
+                - rod_1_z*rod_2_y_below*rod_3_x_above
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_above = 0.0 if type2_rods_coplanar_above_below_above >= min_type2_margin else 3.0
-        type2_rods_coplanar_below_above_above = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_below*rod_2_y_above*rod_3_z_above + rod_1_z_below*rod_2_x_above*rod_3_y_above
-                + rod_2_z_above*rod_3_x_above*y - rod_1_x_below*rod_2_z_above*rod_3_y_above
-                - rod_1_z_below*rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_z_above*y
+        refusal_above_below_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_above*rod_3_z_below + rod_1_z*rod_2_x_above*rod_3_y_below
+                - part_of_type2_rods_coplanar_below_above_below_above_below_above_2
+                - rod_1_x*rod_2_z_above*rod_3_y_below - rod_1_z*rod_2_y_above*rod_3_x_below
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_above = 0.0 if type2_rods_coplanar_below_above_above >= min_type2_margin else 3.0
-        type2_rods_coplanar_above_above_above = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_above*rod_2_y_above*rod_3_z_above + rod_1_z_above*rod_2_x_above*rod_3_y_above
-                + rod_2_z_above*rod_3_x_above*y - rod_1_x_above*rod_2_z_above*rod_3_y_above
-                - rod_1_z_above*rod_2_y_above*rod_3_x_above - rod_2_x_above*rod_3_z_above*y
+        refusal_above_above_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_above*rod_3_z_above + rod_1_z*rod_2_x_above*rod_3_y_above
+                - part_of_type2_rods_coplanar_below_above_below_above_below_above_3
+                - rod_1_x*rod_2_z_above*rod_3_y_above - rod_1_z*rod_2_y_above*rod_3_x_above
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_above = 0.0 if type2_rods_coplanar_above_above_above >= min_type2_margin else 3.0
+        refusal_above_above_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
         return (
             ((axis_a1_below, axis_a2_below, axis_a3_below) if refusal_below_below_below == 0.0 else None),
             ((axis_a1_above, axis_a2_below, axis_a3_below) if refusal_above_below_below == 0.0 else None),

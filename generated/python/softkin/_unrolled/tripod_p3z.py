@@ -54,7 +54,7 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot: its axes, or the number of its status."""
         x, y, z = position
         # numbers of reasonable size
-        if not (abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9):
+        if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return 8*(2.0,)
         span_1_x = constant_part + x  # rod 1
         span_1_y = constant_part_2 + y  # rod 1
@@ -77,51 +77,61 @@ def unrolled(k: Constants) -> Unrolled:
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
             return 8*(3.0,)
-        rod_1_x = x - pivot_1_x
-        rod_1_y = y - pivot_1_y
-        a1_above = z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        rod_2_x = x - pivot_2_x
-        rod_2_y = y - pivot_2_y
-        a2_above = z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        rod_2_z_above = z - a2_above
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        a3_above = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        rod_3_z_above = z - a3_above
-        axis_a3_above = a3_above + offset_a3
-        axis_a2_above = a2_above + offset_a2
-        axis_a1_above = a1_above + offset_a1
-        a2_below = z - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        rod_2_z_below = z - a2_below
-        axis_a2_below = a2_below + offset_a2
-        a3_below = z - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        rod_3_z_below = z - a3_below
-        axis_a3_below = a3_below + offset_a3
+        rod_2_x = x - pivot_2_x
+        rod_2_y = y - pivot_2_y
+        a1 = z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        rod_1_x = x - pivot_1_x
+        rod_1_y = y - pivot_1_y
+        a3 = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
+        rod_3_z = z - a3
+        part_of_type2_rods_coplanar = rod_1_x*rod_2_y*rod_3_z - rod_1_y*rod_2_x*rod_3_z
+        a2 = z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        rod_2_z = z - a2
+        part_of_type2_rods_coplanar_above_above_above_2 = rod_1_x*rod_2_z*rod_3_y - rod_1_y*rod_2_z*rod_3_x
+        axis_a3_above = a3 + offset_a3
+        axis_a2_above = a2 + offset_a2
+        axis_a1_above = a1 + offset_a1
+        a3 = z - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
+        rod_3_z = z - a3
+        part_of_type2_rods_coplanar_above_below_above = rod_1_x*rod_2_y*rod_3_z - rod_1_y*rod_2_x*rod_3_z
+        axis_a3_below = a3 + offset_a3
+        a2 = z - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        rod_2_z = z - a2
+        part_of_type2_rods_coplanar_above_below_above_below_above_below_2 = (
+            rod_1_x*rod_2_z*rod_3_y - rod_1_y*rod_2_z*rod_3_x
+        )
+        axis_a2_below = a2 + offset_a2
         if axis_a1_above >= lowest_a1 and axis_a1_above <= highest_a1:
-            rod_1_z_above = z - a1_above
+            rod_1_z = z - a1
+            part_of_type2_rods_coplanar_above_above_above_3 = rod_1_z*rod_2_x*rod_3_y - rod_1_z*rod_2_y*rod_3_x
+            part_of_type2_rods_coplanar_above_above_above_4 = (
+                part_of_type2_rods_coplanar + part_of_type2_rods_coplanar_above_above_above_3
+            )
+            part_of_type2_rods_coplanar_above_below_above_below_above_below_4 = (
+                part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_above_below_above
+            )
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_above_above_above = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
-                            - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
-                        )
+                    type2_rods_coplanar_above_above = (
+                        (part_of_type2_rods_coplanar_above_above_above_4 - part_of_type2_rods_coplanar_above_above_above_2)
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_above_above_above_2 = 0.0 if type2_rods_coplanar_above_above_above >= min_type2_margin else 3.0
+                    refusal_above_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
                 else:
                     refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_above_above_below = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
-                            - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_above*rod_2_y*rod_3_x
+                    type2_rods_coplanar_above_below = (
+                        (
+                            part_of_type2_rods_coplanar_above_below_above_below_above_below_4
+                            - part_of_type2_rods_coplanar_above_above_above_2
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_above_above_below_2 = 0.0 if type2_rods_coplanar_above_above_below >= min_type2_margin else 3.0
+                    refusal_above_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
                 else:
                     refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             else:
@@ -129,27 +139,27 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_above_below_above = (
+                    type2_rods_coplanar_below_above = (
                         assembly_sign_by_constant_part
                         *(
-                            rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
-                            - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
+                            part_of_type2_rods_coplanar_above_above_above_4
+                            - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
                         )
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_above_below_above_2 = 0.0 if type2_rods_coplanar_above_below_above >= min_type2_margin else 3.0
+                    refusal_above_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
                 else:
                     refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_above_below_below = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
-                            - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_above*rod_2_y*rod_3_x
+                    type2_rods_coplanar_below_below = (
+                        (
+                            part_of_type2_rods_coplanar_above_below_above_below_above_below_4
+                            - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_above_below_below_2 = 0.0 if type2_rods_coplanar_above_below_below >= min_type2_margin else 3.0
+                    refusal_above_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
                 else:
                     refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             else:
@@ -157,36 +167,46 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
         else:
             refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-        a1_below = z - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        axis_a1_below = a1_below + offset_a1
+        a1 = z - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        axis_a1_below = a1 + offset_a1
         if axis_a1_below >= lowest_a1 and axis_a1_below <= highest_a1:
-            rod_1_z_below = z - a1_below
+            rod_1_z = z - a1
+            part_of_type2_rods_coplanar_above_below_above_below_above_below_3 = (
+                rod_1_z*rod_2_x*rod_3_y - rod_1_z*rod_2_y*rod_3_x
+            )
+            part_of_type2_rods_coplanar_above_below_above_below_above_below_5 = (
+                part_of_type2_rods_coplanar + part_of_type2_rods_coplanar_above_below_above_below_above_below_3
+            )
+            part_of_type2_rods_coplanar_above_below_above_below_above_below_6 = (
+                part_of_type2_rods_coplanar_above_below_above
+                + part_of_type2_rods_coplanar_above_below_above_below_above_below_3
+            )
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_below_above_above = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                            - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
+                    type2_rods_coplanar_above_above = (
+                        (
+                            part_of_type2_rods_coplanar_above_below_above_below_above_below_5
+                            - part_of_type2_rods_coplanar_above_above_above_2
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_below_above_above_2 = 0.0 if type2_rods_coplanar_below_above_above >= min_type2_margin else 3.0
+                    refusal_below_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
                 else:
                     refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_below_above_below = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                            - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
+                    type2_rods_coplanar_above_below = (
+                        (
+                            part_of_type2_rods_coplanar_above_below_above_below_above_below_6
+                            - part_of_type2_rods_coplanar_above_above_above_2
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_below_above_below_2 = 0.0 if type2_rods_coplanar_below_above_below >= min_type2_margin else 3.0
+                    refusal_below_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
                 else:
                     refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             else:
@@ -194,27 +214,27 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
-                    type2_rods_coplanar_below_below_above = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                            - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
+                    type2_rods_coplanar_below_above = (
+                        (
+                            part_of_type2_rods_coplanar_above_below_above_below_above_below_5
+                            - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_below_below_above_2 = 0.0 if type2_rods_coplanar_below_below_above >= min_type2_margin else 3.0
+                    refusal_below_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
                 else:
                     refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
-                    type2_rods_coplanar_below_below_below = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                            - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
+                    type2_rods_coplanar_below_below = (
+                        (
+                            part_of_type2_rods_coplanar_above_below_above_below_above_below_6
+                            - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_below_below_below_2 = 0.0 if type2_rods_coplanar_below_below_below >= min_type2_margin else 3.0
+                    refusal_below_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
                 else:
                     refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             else:
@@ -222,8 +242,8 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
         else:
             refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
         return (
             (
@@ -292,102 +312,122 @@ def unrolled(k: Constants) -> Unrolled:
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
             return 8*(None,)
-        rod_1_x = x - pivot_1_x
-        rod_1_y = y - pivot_1_y
-        a1_above = z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        rod_1_z_above = z - a1_above
-        rod_2_x = x - pivot_2_x
-        rod_2_y = y - pivot_2_y
-        a2_above = z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        rod_2_z_above = z - a2_above
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        a3_above = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        rod_3_z_above = z - a3_above
-        type2_rods_coplanar_above_above_above = (
+        rod_2_x = x - pivot_2_x
+        rod_2_y = y - pivot_2_y
+        a1 = z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        rod_1_z = z - a1
+        part_of_type2_rods_coplanar_above_above_above_3 = rod_1_z*rod_2_x*rod_3_y - rod_1_z*rod_2_y*rod_3_x
+        rod_1_x = x - pivot_1_x
+        rod_1_y = y - pivot_1_y
+        a3 = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
+        rod_3_z = z - a3
+        part_of_type2_rods_coplanar = rod_1_x*rod_2_y*rod_3_z - rod_1_y*rod_2_x*rod_3_z
+        part_of_type2_rods_coplanar_above_above_above_4 = (
+            part_of_type2_rods_coplanar + part_of_type2_rods_coplanar_above_above_above_3
+        )
+        a2 = z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        rod_2_z = z - a2
+        part_of_type2_rods_coplanar_above_above_above_2 = rod_1_x*rod_2_z*rod_3_y - rod_1_y*rod_2_z*rod_3_x
+        type2_rods_coplanar = (
+            (part_of_type2_rods_coplanar_above_above_above_4 - part_of_type2_rods_coplanar_above_above_above_2)
+            *assembly_sign_by_constant_part
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_above_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a1_above = a1 + offset_a1
+        axis_a2_above = a2 + offset_a2
+        axis_a3_above = a3 + offset_a3
+        a3 = z - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
+        rod_3_z = z - a3
+        part_of_type2_rods_coplanar_above_below_above = rod_1_x*rod_2_y*rod_3_z - rod_1_y*rod_2_x*rod_3_z
+        part_of_type2_rods_coplanar_above_below_above_below_above_below_4 = (
+            part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_above_below_above
+        )
+        type2_rods_coplanar = (
+            (
+                part_of_type2_rods_coplanar_above_below_above_below_above_below_4
+                - part_of_type2_rods_coplanar_above_above_above_2
+            )
+            *assembly_sign_by_constant_part
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_above_above_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a3_below = a3 + offset_a3
+        a2 = z - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
+        rod_2_z = z - a2
+        part_of_type2_rods_coplanar_above_below_above_below_above_below_2 = (
+            rod_1_x*rod_2_z*rod_3_y - rod_1_y*rod_2_z*rod_3_x
+        )
+        type2_rods_coplanar = (
             assembly_sign_by_constant_part
             *(
-                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
+                part_of_type2_rods_coplanar_above_above_above_4
+                - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
             )
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_above = 0.0 if type2_rods_coplanar_above_above_above >= min_type2_margin else 3.0
-        axis_a1_above = a1_above + offset_a1
-        axis_a2_above = a2_above + offset_a2
-        axis_a3_above = a3_above + offset_a3
-        a1_below = z - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        rod_1_z_below = z - a1_below
-        type2_rods_coplanar_below_above_above = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
+        refusal_above_below_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a2_below = a2 + offset_a2
+        type2_rods_coplanar = (
+            (
+                part_of_type2_rods_coplanar_above_below_above_below_above_below_4
+                - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_above = 0.0 if type2_rods_coplanar_below_above_above >= min_type2_margin else 3.0
-        axis_a1_below = a1_below + offset_a1
-        a2_below = z - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        rod_2_z_below = z - a2_below
-        type2_rods_coplanar_above_below_above = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_above*rod_2_y*rod_3_x
+        refusal_above_below_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        a1 = z - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        rod_1_z = z - a1
+        part_of_type2_rods_coplanar_above_below_above_below_above_below_3 = (
+            rod_1_z*rod_2_x*rod_3_y - rod_1_z*rod_2_y*rod_3_x
+        )
+        part_of_type2_rods_coplanar_above_below_above_below_above_below_5 = (
+            part_of_type2_rods_coplanar + part_of_type2_rods_coplanar_above_below_above_below_above_below_3
+        )
+        type2_rods_coplanar = (
+            (
+                part_of_type2_rods_coplanar_above_below_above_below_above_below_5
+                - part_of_type2_rods_coplanar_above_above_above_2
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_above = 0.0 if type2_rods_coplanar_above_below_above >= min_type2_margin else 3.0
-        axis_a2_below = a2_below + offset_a2
-        type2_rods_coplanar_below_below_above = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x*rod_2_y*rod_3_z_above + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_above - rod_1_z_below*rod_2_y*rod_3_x
+        refusal_below_above_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a1_below = a1 + offset_a1
+        part_of_type2_rods_coplanar_above_below_above_below_above_below_6 = (
+            part_of_type2_rods_coplanar_above_below_above
+            + part_of_type2_rods_coplanar_above_below_above_below_above_below_3
+        )
+        type2_rods_coplanar = (
+            (
+                part_of_type2_rods_coplanar_above_below_above_below_above_below_6
+                - part_of_type2_rods_coplanar_above_above_above_2
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_above = 0.0 if type2_rods_coplanar_below_below_above >= min_type2_margin else 3.0
-        a3_below = z - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        rod_3_z_below = z - a3_below
-        type2_rods_coplanar_above_above_below = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_above*rod_2_y*rod_3_x
+        refusal_below_above_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        type2_rods_coplanar = (
+            (
+                part_of_type2_rods_coplanar_above_below_above_below_above_below_5
+                - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_above_below = 0.0 if type2_rods_coplanar_above_above_below >= min_type2_margin else 3.0
-        axis_a3_below = a3_below + offset_a3
-        type2_rods_coplanar_below_above_below = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_above*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_above*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
+        refusal_below_below_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        type2_rods_coplanar = (
+            (
+                part_of_type2_rods_coplanar_above_below_above_below_above_below_6
+                - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_above_below = 0.0 if type2_rods_coplanar_below_above_below >= min_type2_margin else 3.0
-        type2_rods_coplanar_above_below_below = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_above*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_above*rod_2_y*rod_3_x
-            )
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_above_below_below = 0.0 if type2_rods_coplanar_above_below_below >= min_type2_margin else 3.0
-        type2_rods_coplanar_below_below_below = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x*rod_2_y*rod_3_z_below + rod_1_y*rod_2_z_below*rod_3_x + rod_1_z_below*rod_2_x*rod_3_y
-                - rod_1_x*rod_2_z_below*rod_3_y - rod_1_y*rod_2_x*rod_3_z_below - rod_1_z_below*rod_2_y*rod_3_x
-            )
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_below_below_below = 0.0 if type2_rods_coplanar_below_below_below >= min_type2_margin else 3.0
+        refusal_below_below_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
         return (
             ((axis_a1_above, axis_a2_above, axis_a3_above) if refusal_above_above_above == 0.0 else None),
             ((axis_a1_below, axis_a2_above, axis_a3_above) if refusal_below_above_above == 0.0 else None),

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, nearest_period, root, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, root, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -47,17 +47,19 @@ def unrolled(k: Constants) -> Unrolled:
         + stewart_radius*stewart_radius - arm_length_2*arm_length_2 - 0.25*distance*distance
     )
     arm_length_1_times_shortest_link = 1e-9*arm_length_1
-    constant_part_3 = arm_length_1*arm_length_1 - arm_length_2*arm_length_2
-    constant_part_4 = 0.5*arm_1_radius - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-    constant_part_5 = (
+    arm_length_1_squared = arm_length_1*arm_length_1
+    arm_length_2_squared = arm_length_2*arm_length_2
+    constant_part_3 = 0.5*arm_1_radius - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
+    constant_part_4 = (
         0.5*root(3.0)*arm_1_radius - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
     )
-    constant_part_6 = 5e-10*arm_length_1
-    constant_part_7 = 0.5/arm_length_2
+    constant_part_5 = 5e-10*arm_length_1
+    constant_part_6 = 0.5/arm_length_2
     constant_part_by_2_by_arm_length_2 = 0.5*root(3.0)/arm_length_2
     arm_length_1_by_2 = 0.5*arm_length_1
     constant_part_times_arm_length_1_by_2 = 0.5*root(3.0)*arm_length_1
     assembly_sign_by_constant_part = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
+    constant_part_7 = arm_length_1*arm_length_1 - arm_length_2*arm_length_2
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -65,8 +67,8 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, ref_a3 = reference
         # numbers of reasonable size
         if not (
-            abs(x) <= 1e9 and abs(y) <= 1e9 and abs(z) <= 1e9 and abs(ref_a1) <= 1e9 and abs(ref_a2) <= 1e9
-            and abs(ref_a3) <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return 8*(2.0,)
         span_1_x = arm_1_radius_minus_constant_part + x  # rod 1
@@ -84,47 +86,60 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return 8*(3.0,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
+        arm_length_1_squared_plus_divisor_a1_squared = arm_length_1_squared + divisor_a1*divisor_a1
+        arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared = (
+            arm_length_1_squared_plus_divisor_a1_squared + y*y
+        )
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (constant_part_3 + arm_length_1_times_2*divisor_a1 + divisor_a1*divisor_a1 + y*y)
-            *(arm_length_1_times_2*divisor_a1 - constant_part_3 - divisor_a1*divisor_a1 - y*y)
+            (
+                arm_length_2_squared + arm_length_1_times_2*divisor_a1
+                - arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared
+            )
+            *(
+                arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared + arm_length_1_times_2*divisor_a1
+                - arm_length_2_squared
+            )
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(3.0,)
-        span_2_x = x - constant_part_4  # rod 2
-        span_2_y = constant_part_5 + y  # rod 2
+        span_2_x = x - constant_part_3  # rod 2
+        span_2_y = constant_part_4 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > constant_part_6):
+        if not (effective_a2 > constant_part_5):
             return 8*(3.0,)
-        divisor_a2 = effective_a2 if effective_a2 > constant_part_6 else 1.0
+        arm_length_1_squared_plus_span_1_z_squared = arm_length_1_squared + span_1_z*span_1_z
+        part_of_sine_square_a2 = arm_length_1_squared_plus_span_1_z_squared + span_2_x*span_2_x
+        arm_length_2_squared_minus_part_of_sine_square_a2 = arm_length_2_squared - part_of_sine_square_a2
+        divisor_a2 = effective_a2 if effective_a2 > constant_part_5 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (constant_part_3 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)
-            *(arm_length_1*divisor_a2 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_2_y*span_2_y)
+            (arm_length_2_squared_minus_part_of_sine_square_a2 + arm_length_1*divisor_a2 - span_2_y*span_2_y)
+            *(arm_length_1*divisor_a2 + span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(3.0,)
-        span_3_y = y - constant_part_5  # rod 3
+        span_3_y = y - constant_part_4  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > constant_part_6):
+        if not (effective_a3 > constant_part_5):
             return 8*(3.0,)
-        divisor_a3 = effective_a3 if effective_a3 > constant_part_6 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > constant_part_5 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (constant_part_3 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)
-            *(arm_length_1*divisor_a3 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_3_y*span_3_y)
+            (arm_length_2_squared_minus_part_of_sine_square_a2 + arm_length_1*divisor_a3 - span_3_y*span_3_y)
+            *(arm_length_1*divisor_a3 + span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
@@ -134,143 +149,159 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(3.0,)
         # ball joint of rod 2
-        if not (abs(constant_part_7*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_6*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
         # ball joint of rod 3
-        if not (abs(constant_part_7*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
-        cos_swing_a1 = (-constant_part_3 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
-        sin_swing_a1_outward = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
-        cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1_outward/divisor_a1
-        sin_a1_outward = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
-        cos_swing_a2 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)/swing_scale_a2
-        sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        cos_a2_outward = across_a2*sin_swing_a2_outward/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        pivot_2_x_outward = constant_part_4 + arm_length_1_by_2*cos_a2_outward  # rod 2
-        rod_2_x_outward = x - pivot_2_x_outward
-        pivot_2_y_outward = -constant_part_5 - constant_part_times_arm_length_1_by_2*cos_a2_outward  # rod 2
-        rod_2_y_outward = y - pivot_2_y_outward
-        sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
+        cos_swing_a2 = (span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a2
+        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
+        pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
+        rod_2_x_outward = x - pivot_2_x
+        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
+        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
+        sin_a2 = -across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
         # rod 2
-        pivot_2_z_outward = (
+        pivot_2_z = (
             root(
                 (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
                 + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
-            - arm_length_1*sin_a2_outward
+            - arm_length_1*sin_a2
         )
-        rod_2_z_outward = z - pivot_2_z_outward
-        cos_swing_a3 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)/swing_scale_a3
-        sin_swing_a3_outward = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
-        cos_a3_outward = across_a2*sin_swing_a3_outward/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        pivot_3_x_outward = constant_part_4 + arm_length_1_by_2*cos_a3_outward  # rod 3
-        rod_3_x_outward = x - pivot_3_x_outward
-        pivot_3_y_outward = constant_part_5 + constant_part_times_arm_length_1_by_2*cos_a3_outward  # rod 3
-        rod_3_y_outward = y - pivot_3_y_outward
-        sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
+        rod_2_z_outward = z - pivot_2_z
+        sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
+        across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
+        cos_swing_a3 = (span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a3
+        along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
+        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
+        pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
+        rod_3_x_outward = x - pivot_3_x
+        along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
+        across_a2_times_cos_swing_a3_by_divisor_a3 = across_a2*cos_swing_a3/divisor_a3
+        sin_a3 = -across_a2_times_cos_swing_a3_by_divisor_a3 - along_a3_times_sin_swing_a3_by_divisor_a3
         # rod 3
-        pivot_3_z_outward = (
+        pivot_3_z = (
             root(
                 (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
                 + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
-            - arm_length_1*sin_a3_outward
+            - arm_length_1*sin_a3
         )
-        rod_3_z_outward = z - pivot_3_z_outward
+        rod_3_z_outward = z - pivot_3_z
+        part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
+        cos_swing_a1 = (
+            (arm_length_2_squared - arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared)/swing_scale_a1
+        )
+        cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
+        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
+        sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
+        cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
+        sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
+        pivot_2_y = -constant_part_4 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
+        rod_2_y_outward = y - pivot_2_y
+        pivot_3_y = constant_part_4 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
+        rod_3_y_outward = y - pivot_3_y
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
-        axis_a3_outward = offset_a3 + arctan2(sin_a3_outward, cos_a3_outward + 0.0)/DEGREE  # A3: its turn
+        axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_outward - open_a3 < 179.999999999:
             axis_a3_outward = nearest_period(axis_a3_outward, open_a3)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
-        axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward + 0.0)/DEGREE  # A2: its turn
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
             axis_a2_outward = nearest_period(axis_a2_outward, open_a2)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward + 0.0)/DEGREE  # A1: its turn
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
-        cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_inward = constant_part_4 + arm_length_1_by_2*cos_a2_inward  # rod 2
-        rod_2_x_inward = x - pivot_2_x_inward
-        pivot_2_y_inward = -constant_part_5 - constant_part_times_arm_length_1_by_2*cos_a2_inward  # rod 2
-        rod_2_y_inward = y - pivot_2_y_inward
-        sin_a2_inward = -across_a2*cos_swing_a2/divisor_a2 - along_a2*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_z_inward = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a2_inward
-        )
-        rod_2_z_inward = z - pivot_2_z_inward
-        axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward + 0.0)/DEGREE  # A2: its turn
-        if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
-            axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
-        cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - across_a2*sin_swing_a3_outward/divisor_a3
-        pivot_3_x_inward = constant_part_4 + arm_length_1_by_2*cos_a3_inward  # rod 3
-        rod_3_x_inward = x - pivot_3_x_inward
-        pivot_3_y_inward = constant_part_5 + constant_part_times_arm_length_1_by_2*cos_a3_inward  # rod 3
-        rod_3_y_inward = y - pivot_3_y_inward
-        sin_a3_inward = -across_a2*cos_swing_a3/divisor_a3 - along_a3*sin_swing_a3_outward/divisor_a3
+        cos_a3 = across_a2_times_sin_swing_a3_by_divisor_a3 + along_a3_times_cos_swing_a3_by_divisor_a3
+        pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
+        rod_3_x_inward = x - pivot_3_x
+        sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - across_a2_times_cos_swing_a3_by_divisor_a3
         # rod 3
-        pivot_3_z_inward = (
+        pivot_3_z = (
             root(
                 (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
                 + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
-            - arm_length_1*sin_a3_inward
+            - arm_length_1*sin_a3
         )
-        rod_3_z_inward = z - pivot_3_z_inward
-        axis_a3_inward = offset_a3 + arctan2(sin_a3_inward, cos_a3_inward + 0.0)/DEGREE  # A3: its turn
+        rod_3_z_inward = z - pivot_3_z
+        part_of_type2_rods_coplanar_outward_inward_outward = (
+            rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
+        )
+        pivot_3_y = constant_part_4 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
+        rod_3_y_inward = y - pivot_3_y
+        axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
             axis_a3_inward = nearest_period(axis_a3_inward, open_a3)
+        cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
+        pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
+        rod_2_x_inward = x - pivot_2_x
+        sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - across_a2_times_cos_swing_a2_by_divisor_a2
+        # rod 2
+        pivot_2_z = (
+            root(
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
+            )
+            - arm_length_1*sin_a2
+        )
+        rod_2_z_inward = z - pivot_2_z
+        part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
+            rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
+        )
+        pivot_2_y = -constant_part_4 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
+        rod_2_y_inward = y - pivot_2_y
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
+            axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
+        part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3 = (
+            rod_2_x_inward*rod_3_z_inward*y - rod_2_z_inward*rod_3_x_inward*y
+        )
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x_outward = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1_outward  # rod 1
-            rod_1_x_outward = x - pivot_1_x_outward
+            pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
+            rod_1_x = x - pivot_1_x
             # rod 1
-            pivot_1_z_outward = (
+            pivot_1_z = (
                 root(
                     (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
                     + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
                 )
-                - arm_length_1*sin_a1_outward
+                - arm_length_1*sin_a1
             )
-            rod_1_z_outward = z - pivot_1_z_outward
+            rod_1_z = z - pivot_1_z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_outward_outward_outward = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_outward*rod_2_y_outward*rod_3_z_outward + rod_1_z_outward*rod_2_x_outward*rod_3_y_outward
-                            + rod_2_z_outward*rod_3_x_outward*y - rod_1_x_outward*rod_2_z_outward*rod_3_y_outward
-                            - rod_1_z_outward*rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_z_outward*y
+                    type2_rods_coplanar_outward_outward = (
+                        (
+                            rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_z*rod_2_x_outward*rod_3_y_outward
+                            - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_outward*rod_3_y_outward
+                            - rod_1_z*rod_2_y_outward*rod_3_x_outward
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_outward_outward_outward_2 = (
-                        0.0
-                        if type2_rods_coplanar_outward_outward_outward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_outward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_outward_outward_inward = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward
-                            + rod_2_z_outward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
-                            - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_z_inward*y
+                    type2_rods_coplanar_outward_inward = (
+                        (
+                            rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_z*rod_2_x_outward*rod_3_y_inward
+                            - part_of_type2_rods_coplanar_outward_inward_outward - rod_1_x*rod_2_z_outward*rod_3_y_inward
+                            - rod_1_z*rod_2_y_outward*rod_3_x_inward
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_outward_outward_inward_2 = (
-                        0.0
-                        if type2_rods_coplanar_outward_outward_inward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_outward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_inward_2 = 3.0
@@ -281,38 +312,30 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_outward_outward_inward_2 = 3.0
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_outward_inward_outward = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward
-                            + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
-                            - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
+                    type2_rods_coplanar_inward_outward = (
+                        (
+                            rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_z*rod_2_x_inward*rod_3_y_outward
+                            - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2
+                            - rod_1_x*rod_2_z_inward*rod_3_y_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_outward_inward_outward_2 = (
-                        0.0
-                        if type2_rods_coplanar_outward_inward_outward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_outward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_outward_inward_inward = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward
-                            + rod_2_z_inward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
-                            - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_z_inward*y
+                    type2_rods_coplanar_inward_inward = (
+                        (
+                            rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_z*rod_2_x_inward*rod_3_y_inward
+                            - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3
+                            - rod_1_x*rod_2_z_inward*rod_3_y_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_outward_inward_inward_2 = (
-                        0.0
-                        if type2_rods_coplanar_outward_inward_inward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_outward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_inward_2 = 3.0
@@ -325,62 +348,54 @@ def unrolled(k: Constants) -> Unrolled:
             # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_outward_outward_2 = 3.0
             # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_outward_inward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_outward_inward_2 = 3.0
             # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_outward_inward_outward_2 = 3.0
+            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_inward_inward_2 = 3.0
-        cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + span_1_z*sin_swing_a1_outward/divisor_a1
-        sin_a1_inward = span_1_z*cos_swing_a1/divisor_a1 - span_1_x*sin_swing_a1_outward/divisor_a1
-        axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward + 0.0)/DEGREE  # A1: its turn
+        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
+        sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x_inward = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1_inward  # rod 1
-            rod_1_x_inward = x - pivot_1_x_inward
+            pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
+            rod_1_x = x - pivot_1_x
             # rod 1
-            pivot_1_z_inward = (
+            pivot_1_z = (
                 root(
                     (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
                     + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
                 )
-                - arm_length_1*sin_a1_inward
+                - arm_length_1*sin_a1
             )
-            rod_1_z_inward = z - pivot_1_z_inward
+            rod_1_z = z - pivot_1_z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_inward_outward_outward = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward
-                            + rod_2_z_outward*rod_3_x_outward*y - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
-                            - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_z_outward*y
+                    type2_rods_coplanar_outward_outward = (
+                        (
+                            rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_z*rod_2_x_outward*rod_3_y_outward
+                            - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_outward*rod_3_y_outward
+                            - rod_1_z*rod_2_y_outward*rod_3_x_outward
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_inward_outward_outward_2 = (
-                        0.0
-                        if type2_rods_coplanar_inward_outward_outward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_inward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_inward_outward_inward = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_inward*rod_2_y_outward*rod_3_z_inward + rod_1_z_inward*rod_2_x_outward*rod_3_y_inward
-                            + rod_2_z_outward*rod_3_x_inward*y - rod_1_x_inward*rod_2_z_outward*rod_3_y_inward
-                            - rod_1_z_inward*rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_z_inward*y
+                    type2_rods_coplanar_outward_inward = (
+                        (
+                            rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_z*rod_2_x_outward*rod_3_y_inward
+                            - part_of_type2_rods_coplanar_outward_inward_outward - rod_1_x*rod_2_z_outward*rod_3_y_inward
+                            - rod_1_z*rod_2_y_outward*rod_3_x_inward
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_inward_outward_inward_2 = (
-                        0.0
-                        if type2_rods_coplanar_inward_outward_inward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_inward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_inward_2 = 3.0
@@ -391,34 +406,30 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_inward_outward_inward_2 = 3.0
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
-                    type2_rods_coplanar_inward_inward_outward = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward
-                            + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
-                            - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
+                    type2_rods_coplanar_inward_outward = (
+                        (
+                            rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_z*rod_2_x_inward*rod_3_y_outward
+                            - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2
+                            - rod_1_x*rod_2_z_inward*rod_3_y_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_inward_inward_outward_2 = (
-                        0.0
-                        if type2_rods_coplanar_inward_inward_outward >= min_type2_margin
-                        else 3.0
-                    )
+                    refusal_inward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_outward_2 = 3.0
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
-                    type2_rods_coplanar_inward_inward_inward = (
-                        assembly_sign_by_constant_part
-                        *(
-                            rod_1_x_inward*rod_2_y_inward*rod_3_z_inward + rod_1_z_inward*rod_2_x_inward*rod_3_y_inward
-                            + rod_2_z_inward*rod_3_x_inward*y - rod_1_x_inward*rod_2_z_inward*rod_3_y_inward
-                            - rod_1_z_inward*rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_z_inward*y
+                    type2_rods_coplanar_inward_inward = (
+                        (
+                            rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_z*rod_2_x_inward*rod_3_y_inward
+                            - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3
+                            - rod_1_x*rod_2_z_inward*rod_3_y_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
                         )
+                        *assembly_sign_by_constant_part
                     )
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
-                    refusal_inward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward_inward >= min_type2_margin else 3.0
+                    refusal_inward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
                 else:
                     # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_inward_2 = 3.0
@@ -431,9 +442,9 @@ def unrolled(k: Constants) -> Unrolled:
             # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_outward_outward_2 = 3.0
             # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_inward_inward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_outward_inward_2 = 3.0
+            # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_inward_inward_outward_2 = 3.0
             # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_inward_inward_2 = 3.0
         return (
@@ -497,47 +508,60 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return 8*(None,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
+        arm_length_1_squared_plus_divisor_a1_squared = arm_length_1_squared + divisor_a1*divisor_a1
+        arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared = (
+            arm_length_1_squared_plus_divisor_a1_squared + y*y
+        )
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (constant_part_3 + arm_length_1_times_2*divisor_a1 + divisor_a1*divisor_a1 + y*y)
-            *(arm_length_1_times_2*divisor_a1 - constant_part_3 - divisor_a1*divisor_a1 - y*y)
+            (
+                arm_length_2_squared + arm_length_1_times_2*divisor_a1
+                - arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared
+            )
+            *(
+                arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared + arm_length_1_times_2*divisor_a1
+                - arm_length_2_squared
+            )
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return 8*(None,)
-        span_2_x = x - constant_part_4  # rod 2
-        span_2_y = constant_part_5 + y  # rod 2
+        span_2_x = x - constant_part_3  # rod 2
+        span_2_y = constant_part_4 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > constant_part_6):
+        if not (effective_a2 > constant_part_5):
             return 8*(None,)
-        divisor_a2 = effective_a2 if effective_a2 > constant_part_6 else 1.0
+        arm_length_1_squared_plus_span_1_z_squared = arm_length_1_squared + span_1_z*span_1_z
+        part_of_sine_square_a2 = arm_length_1_squared_plus_span_1_z_squared + span_2_x*span_2_x
+        arm_length_2_squared_minus_part_of_sine_square_a2 = arm_length_2_squared - part_of_sine_square_a2
+        divisor_a2 = effective_a2 if effective_a2 > constant_part_5 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (constant_part_3 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)
-            *(arm_length_1*divisor_a2 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_2_y*span_2_y)
+            (arm_length_2_squared_minus_part_of_sine_square_a2 + arm_length_1*divisor_a2 - span_2_y*span_2_y)
+            *(arm_length_1*divisor_a2 + span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 8*(None,)
-        span_3_y = y - constant_part_5  # rod 3
+        span_3_y = y - constant_part_4  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > constant_part_6):
+        if not (effective_a3 > constant_part_5):
             return 8*(None,)
-        divisor_a3 = effective_a3 if effective_a3 > constant_part_6 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > constant_part_5 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (constant_part_3 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)
-            *(arm_length_1*divisor_a3 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_3_y*span_3_y)
+            (arm_length_2_squared_minus_part_of_sine_square_a2 + arm_length_1*divisor_a3 - span_3_y*span_3_y)
+            *(arm_length_1*divisor_a3 + span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
@@ -547,205 +571,213 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(None,)
         # ball joint of rod 2
-        if not (abs(constant_part_7*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_6*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
         # ball joint of rod 3
-        if not (abs(constant_part_7*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
-        cos_swing_a1 = (-constant_part_3 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
-        sin_swing_a1_outward = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
-        cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1_outward/divisor_a1
-        pivot_1_x_outward = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1_outward  # rod 1
-        rod_1_x_outward = x - pivot_1_x_outward
-        sin_a1_outward = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
-        # rod 1
-        pivot_1_z_outward = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a1_outward
-        )
-        rod_1_z_outward = z - pivot_1_z_outward
-        cos_swing_a2 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)/swing_scale_a2
-        sin_swing_a2_outward = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        cos_a2_outward = across_a2*sin_swing_a2_outward/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        pivot_2_x_outward = constant_part_4 + arm_length_1_by_2*cos_a2_outward  # rod 2
-        rod_2_x_outward = x - pivot_2_x_outward
-        pivot_2_y_outward = -constant_part_5 - constant_part_times_arm_length_1_by_2*cos_a2_outward  # rod 2
-        rod_2_y_outward = y - pivot_2_y_outward
-        sin_a2_outward = along_a2*sin_swing_a2_outward/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
+        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
+        cos_swing_a2 = (span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a2
+        along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
+        cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
+        pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
+        rod_2_x_outward = x - pivot_2_x
+        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
+        across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
+        sin_a2 = -across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
         # rod 2
-        pivot_2_z_outward = (
+        pivot_2_z = (
             root(
                 (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
                 + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
-            - arm_length_1*sin_a2_outward
+            - arm_length_1*sin_a2
         )
-        rod_2_z_outward = z - pivot_2_z_outward
-        cos_swing_a3 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)/swing_scale_a3
-        sin_swing_a3_outward = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
-        cos_a3_outward = across_a2*sin_swing_a3_outward/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        pivot_3_x_outward = constant_part_4 + arm_length_1_by_2*cos_a3_outward  # rod 3
-        rod_3_x_outward = x - pivot_3_x_outward
-        pivot_3_y_outward = constant_part_5 + constant_part_times_arm_length_1_by_2*cos_a3_outward  # rod 3
-        rod_3_y_outward = y - pivot_3_y_outward
-        sin_a3_outward = along_a3*sin_swing_a3_outward/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
+        rod_2_z_outward = z - pivot_2_z
+        sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
+        across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
+        cos_swing_a3 = (span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a3
+        along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
+        cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
+        pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
+        rod_3_x_outward = x - pivot_3_x
+        along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
+        across_a2_times_cos_swing_a3_by_divisor_a3 = across_a2*cos_swing_a3/divisor_a3
+        sin_a3 = -across_a2_times_cos_swing_a3_by_divisor_a3 - along_a3_times_sin_swing_a3_by_divisor_a3
         # rod 3
-        pivot_3_z_outward = (
+        pivot_3_z = (
             root(
                 (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
                 + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
-            - arm_length_1*sin_a3_outward
+            - arm_length_1*sin_a3
         )
-        rod_3_z_outward = z - pivot_3_z_outward
-        type2_rods_coplanar_outward_outward_outward = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_outward*rod_2_y_outward*rod_3_z_outward + rod_1_z_outward*rod_2_x_outward*rod_3_y_outward
-                + rod_2_z_outward*rod_3_x_outward*y - rod_1_x_outward*rod_2_z_outward*rod_3_y_outward
-                - rod_1_z_outward*rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_z_outward*y
-            )
+        rod_3_z_outward = z - pivot_3_z
+        part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
+        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
+        cos_swing_a1 = (
+            (arm_length_2_squared - arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared)/swing_scale_a1
         )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_outward = (
-            0.0
-            if type2_rods_coplanar_outward_outward_outward >= min_type2_margin
-            else 3.0
-        )
-        axis_a1_outward = offset_a1 + arctan2(sin_a1_outward, cos_a1_outward)/DEGREE  # A1: its turn
-        axis_a2_outward = offset_a2 + arctan2(sin_a2_outward, cos_a2_outward)/DEGREE  # A2: its turn
-        axis_a3_outward = offset_a3 + arctan2(sin_a3_outward, cos_a3_outward)/DEGREE  # A3: its turn
-        cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + span_1_z*sin_swing_a1_outward/divisor_a1
-        pivot_1_x_inward = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1_inward  # rod 1
-        rod_1_x_inward = x - pivot_1_x_inward
-        sin_a1_inward = span_1_z*cos_swing_a1/divisor_a1 - span_1_x*sin_swing_a1_outward/divisor_a1
+        cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
+        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
+        pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
+        rod_1_x = x - pivot_1_x
+        sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
+        cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
+        sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
         # rod 1
-        pivot_1_z_inward = (
+        pivot_1_z = (
             root(
                 (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
                 + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
-            - arm_length_1*sin_a1_inward
+            - arm_length_1*sin_a1
         )
-        rod_1_z_inward = z - pivot_1_z_inward
-        type2_rods_coplanar_inward_outward_outward = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_inward*rod_2_y_outward*rod_3_z_outward + rod_1_z_inward*rod_2_x_outward*rod_3_y_outward
-                + rod_2_z_outward*rod_3_x_outward*y - rod_1_x_inward*rod_2_z_outward*rod_3_y_outward
-                - rod_1_z_inward*rod_2_y_outward*rod_3_x_outward - rod_2_x_outward*rod_3_z_outward*y
+        rod_1_z = z - pivot_1_z
+        pivot_2_y = -constant_part_4 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
+        rod_2_y_outward = y - pivot_2_y
+        pivot_3_y = constant_part_4 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
+        rod_3_y_outward = y - pivot_3_y
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_z*rod_2_x_outward*rod_3_y_outward
+                - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_outward*rod_3_y_outward
+                - rod_1_z*rod_2_y_outward*rod_3_x_outward
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_outward = (
-            0.0
-            if type2_rods_coplanar_inward_outward_outward >= min_type2_margin
-            else 3.0
-        )
-        axis_a1_inward = offset_a1 + arctan2(sin_a1_inward, cos_a1_inward)/DEGREE  # A1: its turn
-        cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2_outward/divisor_a2
-        pivot_2_x_inward = constant_part_4 + arm_length_1_by_2*cos_a2_inward  # rod 2
-        rod_2_x_inward = x - pivot_2_x_inward
-        pivot_2_y_inward = -constant_part_5 - constant_part_times_arm_length_1_by_2*cos_a2_inward  # rod 2
-        rod_2_y_inward = y - pivot_2_y_inward
-        sin_a2_inward = -across_a2*cos_swing_a2/divisor_a2 - along_a2*sin_swing_a2_outward/divisor_a2
-        # rod 2
-        pivot_2_z_inward = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a2_inward
-        )
-        rod_2_z_inward = z - pivot_2_z_inward
-        type2_rods_coplanar_outward_inward_outward = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_outward*rod_2_y_inward*rod_3_z_outward + rod_1_z_outward*rod_2_x_inward*rod_3_y_outward
-                + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_outward
-                - rod_1_z_outward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
-            )
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_outward = (
-            0.0
-            if type2_rods_coplanar_outward_inward_outward >= min_type2_margin
-            else 3.0
-        )
-        axis_a2_inward = offset_a2 + arctan2(sin_a2_inward, cos_a2_inward)/DEGREE  # A2: its turn
-        type2_rods_coplanar_inward_inward_outward = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_inward*rod_2_y_inward*rod_3_z_outward + rod_1_z_inward*rod_2_x_inward*rod_3_y_outward
-                + rod_2_z_inward*rod_3_x_outward*y - rod_1_x_inward*rod_2_z_inward*rod_3_y_outward
-                - rod_1_z_inward*rod_2_y_inward*rod_3_x_outward - rod_2_x_inward*rod_3_z_outward*y
-            )
-        )
-        # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_outward = 0.0 if type2_rods_coplanar_inward_inward_outward >= min_type2_margin else 3.0
-        cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 - across_a2*sin_swing_a3_outward/divisor_a3
-        pivot_3_x_inward = constant_part_4 + arm_length_1_by_2*cos_a3_inward  # rod 3
-        rod_3_x_inward = x - pivot_3_x_inward
-        pivot_3_y_inward = constant_part_5 + constant_part_times_arm_length_1_by_2*cos_a3_inward  # rod 3
-        rod_3_y_inward = y - pivot_3_y_inward
-        sin_a3_inward = -across_a2*cos_swing_a3/divisor_a3 - along_a3*sin_swing_a3_outward/divisor_a3
+        refusal_outward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
+        cos_a3 = across_a2_times_sin_swing_a3_by_divisor_a3 + along_a3_times_cos_swing_a3_by_divisor_a3
+        pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
+        rod_3_x_inward = x - pivot_3_x
+        sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - across_a2_times_cos_swing_a3_by_divisor_a3
         # rod 3
-        pivot_3_z_inward = (
+        pivot_3_z = (
             root(
                 (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
                 + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
-            - arm_length_1*sin_a3_inward
+            - arm_length_1*sin_a3
         )
-        rod_3_z_inward = z - pivot_3_z_inward
-        type2_rods_coplanar_outward_outward_inward = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_outward*rod_2_y_outward*rod_3_z_inward + rod_1_z_outward*rod_2_x_outward*rod_3_y_inward
-                + rod_2_z_outward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_outward*rod_3_y_inward
-                - rod_1_z_outward*rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_z_inward*y
+        rod_3_z_inward = z - pivot_3_z
+        part_of_type2_rods_coplanar_outward_inward_outward = (
+            rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
+        )
+        pivot_3_y = constant_part_4 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
+        rod_3_y_inward = y - pivot_3_y
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_z*rod_2_x_outward*rod_3_y_inward
+                - part_of_type2_rods_coplanar_outward_inward_outward - rod_1_x*rod_2_z_outward*rod_3_y_inward
+                - rod_1_z*rod_2_y_outward*rod_3_x_inward
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_outward_inward = (
-            0.0
-            if type2_rods_coplanar_outward_outward_inward >= min_type2_margin
-            else 3.0
-        )
-        axis_a3_inward = offset_a3 + arctan2(sin_a3_inward, cos_a3_inward)/DEGREE  # A3: its turn
-        type2_rods_coplanar_inward_outward_inward = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_inward*rod_2_y_outward*rod_3_z_inward + rod_1_z_inward*rod_2_x_outward*rod_3_y_inward
-                + rod_2_z_outward*rod_3_x_inward*y - rod_1_x_inward*rod_2_z_outward*rod_3_y_inward
-                - rod_1_z_inward*rod_2_y_outward*rod_3_x_inward - rod_2_x_outward*rod_3_z_inward*y
+        refusal_outward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
+        cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
+        pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
+        rod_2_x_inward = x - pivot_2_x
+        sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - across_a2_times_cos_swing_a2_by_divisor_a2
+        # rod 2
+        pivot_2_z = (
+            root(
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
+            - arm_length_1*sin_a2
+        )
+        rod_2_z_inward = z - pivot_2_z
+        part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
+            rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
+        )
+        pivot_2_y = -constant_part_4 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
+        rod_2_y_inward = y - pivot_2_y
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_z*rod_2_x_inward*rod_3_y_outward
+                - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2
+                - rod_1_x*rod_2_z_inward*rod_3_y_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
+            )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_outward_inward = 0.0 if type2_rods_coplanar_inward_outward_inward >= min_type2_margin else 3.0
-        type2_rods_coplanar_outward_inward_inward = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_outward*rod_2_y_inward*rod_3_z_inward + rod_1_z_outward*rod_2_x_inward*rod_3_y_inward
-                + rod_2_z_inward*rod_3_x_inward*y - rod_1_x_outward*rod_2_z_inward*rod_3_y_inward
-                - rod_1_z_outward*rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_z_inward*y
+        refusal_outward_inward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3 = (
+            rod_2_x_inward*rod_3_z_inward*y - rod_2_z_inward*rod_3_x_inward*y
+        )
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_z*rod_2_x_inward*rod_3_y_inward
+                - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3
+                - rod_1_x*rod_2_z_inward*rod_3_y_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
             )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_outward_inward_inward = 0.0 if type2_rods_coplanar_outward_inward_inward >= min_type2_margin else 3.0
-        type2_rods_coplanar_inward_inward_inward = (
-            assembly_sign_by_constant_part
-            *(
-                rod_1_x_inward*rod_2_y_inward*rod_3_z_inward + rod_1_z_inward*rod_2_x_inward*rod_3_y_inward
-                + rod_2_z_inward*rod_3_x_inward*y - rod_1_x_inward*rod_2_z_inward*rod_3_y_inward
-                - rod_1_z_inward*rod_2_y_inward*rod_3_x_inward - rod_2_x_inward*rod_3_z_inward*y
+        refusal_outward_inward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
+        pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
+        rod_1_x = x - pivot_1_x
+        sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
+        # rod 1
+        pivot_1_z = (
+            root(
+                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
+                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
             )
+            - arm_length_1*sin_a1
+        )
+        rod_1_z = z - pivot_1_z
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_outward*rod_3_z_outward + rod_1_z*rod_2_x_outward*rod_3_y_outward
+                - part_of_type2_rods_coplanar - rod_1_x*rod_2_z_outward*rod_3_y_outward
+                - rod_1_z*rod_2_y_outward*rod_3_x_outward
+            )
+            *assembly_sign_by_constant_part
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
-        refusal_inward_inward_inward = 0.0 if type2_rods_coplanar_inward_inward_inward >= min_type2_margin else 3.0
+        refusal_inward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_z*rod_2_x_outward*rod_3_y_inward
+                - part_of_type2_rods_coplanar_outward_inward_outward - rod_1_x*rod_2_z_outward*rod_3_y_inward
+                - rod_1_z*rod_2_y_outward*rod_3_x_inward
+            )
+            *assembly_sign_by_constant_part
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_inward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_inward*rod_3_z_outward + rod_1_z*rod_2_x_inward*rod_3_y_outward
+                - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2
+                - rod_1_x*rod_2_z_inward*rod_3_y_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
+            )
+            *assembly_sign_by_constant_part
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_inward_inward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
+        type2_rods_coplanar = (
+            (
+                rod_1_x*rod_2_y_inward*rod_3_z_inward + rod_1_z*rod_2_x_inward*rod_3_y_inward
+                - part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3
+                - rod_1_x*rod_2_z_inward*rod_3_y_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
+            )
+            *assembly_sign_by_constant_part
+        )
+        # rods_coplanar: the other assembly mode, or too near to losing the plate
+        refusal_inward_inward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
         return (
             ((axis_a1_outward, axis_a2_outward, axis_a3_outward) if refusal_outward_outward_outward == 0.0 else None),
             ((axis_a1_inward, axis_a2_outward, axis_a3_outward) if refusal_inward_outward_outward == 0.0 else None),
@@ -780,50 +812,50 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (constant_part_3 + arm_length_1_times_2*divisor_a1 + divisor_a1*divisor_a1 + y*y)
-            *(arm_length_1_times_2*divisor_a1 - constant_part_3 - divisor_a1*divisor_a1 - y*y)
+            (constant_part_7 + arm_length_1_times_2*divisor_a1 + divisor_a1*divisor_a1 + y*y)
+            *(arm_length_1_times_2*divisor_a1 - constant_part_7 - divisor_a1*divisor_a1 - y*y)
             /(swing_scale_a1*swing_scale_a1)
         )
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12):
             return None
-        span_2_x = x - constant_part_4  # rod 2
-        span_2_y = constant_part_5 + y  # rod 2
+        span_2_x = x - constant_part_3  # rod 2
+        span_2_y = constant_part_4 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > constant_part_6):
+        if not (effective_a2 > constant_part_5):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > constant_part_6 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > constant_part_5 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (constant_part_3 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)
-            *(arm_length_1*divisor_a2 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_2_y*span_2_y)
+            (constant_part_7 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)
+            *(arm_length_1*divisor_a2 - constant_part_7 - span_1_z*span_1_z - span_2_x*span_2_x - span_2_y*span_2_y)
             /(swing_scale_a2*swing_scale_a2)
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        span_3_y = y - constant_part_5  # rod 3
+        span_3_y = y - constant_part_4  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > constant_part_6):
+        if not (effective_a3 > constant_part_5):
             return None
-        divisor_a3 = effective_a3 if effective_a3 > constant_part_6 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > constant_part_5 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (constant_part_3 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)
-            *(arm_length_1*divisor_a3 - constant_part_3 - span_1_z*span_1_z - span_2_x*span_2_x - span_3_y*span_3_y)
+            (constant_part_7 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)
+            *(arm_length_1*divisor_a3 - constant_part_7 - span_1_z*span_1_z - span_2_x*span_2_x - span_3_y*span_3_y)
             /(swing_scale_a3*swing_scale_a3)
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return None
-        cos_swing_a1 = (-constant_part_3 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
+        cos_swing_a1 = (-constant_part_7 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
         sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
         pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
@@ -840,12 +872,12 @@ def unrolled(k: Constants) -> Unrolled:
             - arm_length_1*sin_a1
         )
         rod_1_z = z - pivot_1_z
-        cos_swing_a2 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)/swing_scale_a2
+        cos_swing_a2 = (constant_part_7 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)/swing_scale_a2
         sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        pivot_2_x = constant_part_4 + arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = -constant_part_5 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_4 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
         # rod 2
@@ -859,12 +891,12 @@ def unrolled(k: Constants) -> Unrolled:
             - arm_length_1*sin_a2
         )
         rod_2_z = z - pivot_2_z
-        cos_swing_a3 = (constant_part_3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)/swing_scale_a3
+        cos_swing_a3 = (constant_part_7 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)/swing_scale_a3
         sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        pivot_3_x = constant_part_4 + arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = constant_part_5 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_4 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
         # rod 3
@@ -892,14 +924,14 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 2
-        if not (abs(constant_part_7*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_6*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 3
-        if not (abs(constant_part_7*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)/DEGREE  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)/DEGREE  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)/DEGREE  # A3: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
         return (axis_a1, axis_a2, axis_a3)
 
     return Unrolled(every_branch, branches, branch)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -34,9 +34,9 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a, ref_b = reference
         # numbers of reasonable size
         if not (
-            abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a) <= 1e9
-            and abs(ref_b) <= 1e9
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9
         ):
             return 2*(2.0,)
         # columns of length one, at right angles
@@ -53,18 +53,23 @@ def unrolled(k: Constants) -> Unrolled:
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
         if radius_a > 1e-11:
-            cos_a_positive = r13_of_a/radius_a  # its reference where it is free
-            sin_a_positive = r23_of_a/radius_a
-            cos_a_negative = -cos_a_positive  # its reference where it is free
-            sin_a_negative = -sin_a_positive
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_positive = r13_of_a
+            direction_y_a_positive = r23_of_a
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_negative = -r13_of_a
+            direction_y_a_negative = -r23_of_a
         else:
             free_a = (ref_a - offset_a)*DEGREE
-            cos_a_positive = cos(free_a)  # its reference where it is free
-            sin_a_positive = sin(free_a)
-            cos_a_negative = cos_a_positive  # its reference where it is free
-            sin_a_negative = sin_a_positive
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_positive = cos(free_a)
+            direction_y_a_positive = sin(free_a)
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_negative = direction_x_a_positive
+            direction_y_a_negative = direction_y_a_positive
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
-        axis_a_positive = offset_a + arctan2(sin_a_positive, cos_a_positive + 0.0)/DEGREE  # A: its turn
+        # A: its turn
+        axis_a_positive = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive + 0.0)/DEGREE
         if not -180.000000001 <= axis_a_positive - open_a < 179.999999999:
             axis_a_positive = nearest_period(axis_a_positive, open_a)
         open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
@@ -79,12 +84,12 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_b_positive <= highest_b)
             else 3.0
         )
-        direction_of_axis_a_negative = (
+        direction_of_axis_a = (
             180.0 + axis_a_positive
             if radius_a > 1e-11
-            else offset_a + arctan2(sin_a_negative + 0.0, cos_a_negative + 0.0)/DEGREE
+            else offset_a + arctan2(direction_y_a_negative + 0.0, direction_x_a_negative + 0.0)/DEGREE
         )
-        axis_a_negative = direction_of_axis_a_negative  # A: its turn
+        axis_a_negative = direction_of_axis_a  # A: its turn
         if not -180.000000001 <= axis_a_negative - open_a < 179.999999999:
             axis_a_negative = nearest_period(axis_a_negative, open_a)
         axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
@@ -111,27 +116,31 @@ def unrolled(k: Constants) -> Unrolled:
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
         if radius_a > 1e-11:
-            cos_a_positive = r13_of_a/radius_a  # its reference where it is free
-            sin_a_positive = r23_of_a/radius_a
-            cos_a_negative = -cos_a_positive  # its reference where it is free
-            sin_a_negative = -sin_a_positive
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_positive = r13_of_a
+            direction_y_a_positive = r23_of_a
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_negative = -r13_of_a
+            direction_y_a_negative = -r23_of_a
         else:
             free_a = (ref_a - offset_a)*DEGREE
-            cos_a_positive = cos(free_a)  # its reference where it is free
-            sin_a_positive = sin(free_a)
-            cos_a_negative = cos_a_positive  # its reference where it is free
-            sin_a_negative = sin_a_positive
-        axis_a_positive = offset_a + arctan2(sin_a_positive, cos_a_positive)/DEGREE  # A: its turn
-        axis_b_positive = offset_b + arctan2(radius_a, r33)/DEGREE  # B: its turn
-        direction_of_axis_a_negative = (
-            180.0 + axis_a_positive
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_positive = cos(free_a)
+            direction_y_a_positive = sin(free_a)
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a_negative = direction_x_a_positive
+            direction_y_a_negative = direction_y_a_positive
+        axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive)*RADIAN  # A: its turn
+        axis_b_positive = offset_b + arctan2(radius_a, r33)*RADIAN  # B: its turn
+        direction_of_axis_a = (
+            180.0 + axis_a
             if radius_a > 1e-11
-            else offset_a + arctan2(sin_a_negative, cos_a_negative)/DEGREE
+            else offset_a + arctan2(direction_y_a_negative, direction_x_a_negative)*RADIAN
         )
         axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
         return (
-            (axis_a_positive, axis_b_positive),
-            (direction_of_axis_a_negative, axis_b_negative),
+            (axis_a, axis_b_positive),
+            (direction_of_axis_a, axis_b_negative),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
@@ -143,17 +152,16 @@ def unrolled(k: Constants) -> Unrolled:
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
         if radius_a > 1e-11:
-            along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
-            cos_a = along_a/radius_a  # its reference where it is free
-            across_a = r23_of_a*sigma_roll
-            sin_a = across_a/radius_a
+            # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a = r13_of_a*sigma_roll
+            direction_y_a = r23_of_a*sigma_roll
         else:
             free_a = (ref_a - offset_a)*DEGREE
-            cos_a = cos(free_a)  # its reference where it is free
-            sin_a = sin(free_a)
-        axis_a = offset_a + arctan2(sin_a, cos_a)/DEGREE  # A: its turn
+            direction_x_a = cos(free_a)  # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_y_a = sin(free_a)
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN  # A: its turn
         a_radius_of_b = radius_a*sigma_roll
-        axis_b = offset_b + arctan2(a_radius_of_b, r33)/DEGREE  # B: its turn
+        axis_b = offset_b + arctan2(a_radius_of_b, r33)*RADIAN  # B: its turn
         return (axis_a, axis_b)
 
     return Unrolled(every_branch, branches, branch)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -38,9 +38,9 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a, ref_b, ref_c = reference
         # numbers of reasonable size
         if not (
-            abs(r11) <= 1e9 and abs(r12) <= 1e9 and abs(r13) <= 1e9 and abs(r21) <= 1e9 and abs(r22) <= 1e9
-            and abs(r23) <= 1e9 and abs(r31) <= 1e9 and abs(r32) <= 1e9 and abs(r33) <= 1e9 and abs(ref_a) <= 1e9
-            and abs(ref_b) <= 1e9 and abs(ref_c) <= 1e9
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a <= 1e9 and -1e9 <= ref_b <= 1e9 and -1e9 <= ref_c <= 1e9
         ):
             return 2*(2.0,)
         # columns of length one, at right angles
@@ -55,38 +55,30 @@ def unrolled(k: Constants) -> Unrolled:
             return 2*(2.0,)
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
         if radius_c > 1e-11:
-            cos_c_down = r31/radius_c  # its reference where it is free
-            sin_c_down = -r32/radius_c
-            cos_c_up = -cos_c_down  # its reference where it is free
-            sin_c_up = -sin_c_down
+            direction_x_c_down = r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_y_c_down = -r32
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            cos_c_down = cos(free_c)  # its reference where it is free
-            sin_c_down = sin(free_c)
-            cos_c_up = cos_c_down  # its reference where it is free
-            sin_c_up = sin_c_down
-        r22_before_c_down = r22*cos_c_down + r21*sin_c_down
-        r12_before_c_down = r12*cos_c_down + r11*sin_c_down
+            # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_x_c_down = cos(free_c)
+            direction_y_c_down = sin(free_c)
+            # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_x_c_up = direction_x_c_down
+            direction_y_c_up = direction_y_c_down
+        r22_before_c_down = direction_x_c_down*r22 + direction_y_c_down*r21
+        sin_a_down = -direction_x_c_down*r12 - direction_y_c_down*r11
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
-        axis_a_down = offset_a + arctan2(-r12_before_c_down, r22_before_c_down + 0.0)/DEGREE  # A: its turn
+        axis_a_down = offset_a + arctan2(sin_a_down, r22_before_c_down + 0.0)/DEGREE  # A: its turn
         if not -180.000000001 <= axis_a_down - open_a < 179.999999999:
             axis_a_down = nearest_period(axis_a_down, open_a)
-        open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
-        axis_c_down = offset_c + arctan2(sin_c_down, cos_c_down + 0.0)/DEGREE  # C: its turn
-        if not -180.000000001 <= axis_c_down - open_c < 179.999999999:
-            axis_c_down = nearest_period(axis_c_down, open_c)
-        if radius_c > 1e-11:
-            direction_of_axis_a_up = 180.0 + axis_a_down
-            direction_of_axis_c_up = 180.0 + axis_c_down
-        else:
-            r22_before_c_up = r22*cos_c_up + r21*sin_c_up
-            r12_before_c_up = r12*cos_c_up + r11*sin_c_up
-            direction_of_axis_a_up = offset_a + arctan2(-r12_before_c_up + 0.0, r22_before_c_up + 0.0)/DEGREE
-            direction_of_axis_c_up = offset_c + arctan2(sin_c_up + 0.0, cos_c_up + 0.0)/DEGREE
         open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
         axis_b_down = offset_b + arctan2(radius_c, r33 + 0.0)/DEGREE  # B: its turn
         if not -180.000000001 <= axis_b_down - open_b < 179.999999999:
             axis_b_down = nearest_period(axis_b_down, open_b)
+        open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
+        axis_c_down = offset_c + arctan2(direction_y_c_down, direction_x_c_down + 0.0)/DEGREE  # C: its turn
+        if not -180.000000001 <= axis_c_down - open_c < 179.999999999:
+            axis_c_down = nearest_period(axis_c_down, open_c)
         # limits of A, limits of B, limits of C
         refusal_down = (
             0.0
@@ -95,13 +87,21 @@ def unrolled(k: Constants) -> Unrolled:
             ) and (axis_b_down <= highest_b) and (axis_c_down <= highest_c)
             else 3.0
         )
-        axis_a_up = direction_of_axis_a_up  # A: its turn
+        if radius_c > 1e-11:
+            direction_of_axis_a = 180.0 + axis_a_down
+            direction_of_axis_c = 180.0 + axis_c_down
+        else:
+            r22_before_c_up = direction_x_c_up*r22 + direction_y_c_up*r21
+            sin_a_up = -direction_x_c_up*r12 - direction_y_c_up*r11
+            direction_of_axis_a = offset_a + arctan2(sin_a_up + 0.0, r22_before_c_up + 0.0)/DEGREE
+            direction_of_axis_c = offset_c + arctan2(direction_y_c_up + 0.0, direction_x_c_up + 0.0)/DEGREE
+        axis_a_up = direction_of_axis_a  # A: its turn
         if not -180.000000001 <= axis_a_up - open_a < 179.999999999:
             axis_a_up = nearest_period(axis_a_up, open_a)
         axis_b_up = offset_b_times_2 - axis_b_down  # B: its turn
         if not -180.000000001 <= axis_b_up - open_b < 179.999999999:
             axis_b_up = nearest_period(axis_b_up, open_b)
-        axis_c_up = direction_of_axis_c_up  # C: its turn
+        axis_c_up = direction_of_axis_c  # C: its turn
         if not -180.000000001 <= axis_c_up - open_c < 179.999999999:
             axis_c_up = nearest_period(axis_c_up, open_c)
         # limits of A, limits of B, limits of C
@@ -123,33 +123,33 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, ref_c = reference
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
         if radius_c > 1e-11:
-            cos_c_down = r31/radius_c  # its reference where it is free
-            sin_c_down = -r32/radius_c
-            cos_c_up = -cos_c_down  # its reference where it is free
-            sin_c_up = -sin_c_down
+            direction_x_c_down = r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_y_c_down = -r32
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            cos_c_down = cos(free_c)  # its reference where it is free
-            sin_c_down = sin(free_c)
-            cos_c_up = cos_c_down  # its reference where it is free
-            sin_c_up = sin_c_down
-        r22_before_c_down = r22*cos_c_down + r21*sin_c_down
-        r12_before_c_down = r12*cos_c_down + r11*sin_c_down
-        axis_a_down = offset_a + arctan2(-r12_before_c_down, r22_before_c_down)/DEGREE  # A: its turn
-        axis_c_down = offset_c + arctan2(sin_c_down, cos_c_down)/DEGREE  # C: its turn
+            # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_x_c_down = cos(free_c)
+            direction_y_c_down = sin(free_c)
+            # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_x_c_up = direction_x_c_down
+            direction_y_c_up = direction_y_c_down
+        r22_before_c_down = direction_x_c_down*r22 + direction_y_c_down*r21
+        sin_a_down = -direction_x_c_down*r12 - direction_y_c_down*r11
+        axis_a = offset_a + arctan2(sin_a_down, r22_before_c_down)*RADIAN  # A: its turn
+        axis_b_down = offset_b + arctan2(radius_c, r33)*RADIAN  # B: its turn
+        axis_c = offset_c + arctan2(direction_y_c_down, direction_x_c_down)*RADIAN  # C: its turn
         if radius_c > 1e-11:
-            direction_of_axis_a_up = 180.0 + axis_a_down
-            direction_of_axis_c_up = 180.0 + axis_c_down
+            direction_of_axis_a = 180.0 + axis_a
+            direction_of_axis_c = 180.0 + axis_c
         else:
-            r22_before_c_up = r22*cos_c_up + r21*sin_c_up
-            r12_before_c_up = r12*cos_c_up + r11*sin_c_up
-            direction_of_axis_a_up = offset_a + arctan2(-r12_before_c_up, r22_before_c_up)/DEGREE
-            direction_of_axis_c_up = offset_c + arctan2(sin_c_up, cos_c_up)/DEGREE
-        axis_b_down = offset_b + arctan2(radius_c, r33)/DEGREE  # B: its turn
+            r22_before_c_up = direction_x_c_up*r22 + direction_y_c_up*r21
+            sin_a_up = -direction_x_c_up*r12 - direction_y_c_up*r11
+            direction_of_axis_a = offset_a + arctan2(sin_a_up, r22_before_c_up)*RADIAN
+            direction_of_axis_c = offset_c + arctan2(direction_y_c_up, direction_x_c_up)*RADIAN
         axis_b_up = offset_b_times_2 - axis_b_down  # B: its turn
         return (
-            (axis_a_down, axis_b_down, axis_c_down),
-            (direction_of_axis_a_up, axis_b_up, direction_of_axis_c_up),
+            (axis_a, axis_b_down, axis_c),
+            (direction_of_axis_a, axis_b_up, direction_of_axis_c),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
@@ -159,21 +159,18 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, ref_c = reference
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
         if radius_c > 1e-11:
-            along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
-            cos_c = along_c/radius_c  # its reference where it is free
-            across_c = -r32*sigma_hand
-            sin_c = across_c/radius_c
+            direction_x_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_y_c = -r32*sigma_hand
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            cos_c = cos(free_c)  # its reference where it is free
-            sin_c = sin(free_c)
-        r22_before_c = r22*cos_c + r21*sin_c
-        r12_before_c = r12*cos_c + r11*sin_c
-        sin_a = -r12_before_c
-        axis_a = offset_a + arctan2(sin_a, r22_before_c)/DEGREE  # A: its turn
+            direction_x_c = cos(free_c)  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_y_c = sin(free_c)
+        r22_before_c = direction_x_c*r22 + direction_y_c*r21
+        sin_a = -direction_x_c*r12 - direction_y_c*r11
+        axis_a = offset_a + arctan2(sin_a, r22_before_c)*RADIAN  # A: its turn
         c_radius_of_b = radius_c*sigma_hand
-        axis_b = offset_b + arctan2(c_radius_of_b, r33)/DEGREE  # B: its turn
-        axis_c = offset_c + arctan2(sin_c, cos_c)/DEGREE  # C: its turn
+        axis_b = offset_b + arctan2(c_radius_of_b, r33)*RADIAN  # B: its turn
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN  # C: its turn
         return (axis_a, axis_b, axis_c)
 
     return Unrolled(every_branch, branches, branch)
