@@ -28,6 +28,7 @@ _FIXED = (
     "softkin/_array_coupled.py",
     "softkin/_array_programs/__init__.py",
     "softkin/_batch.py",
+    "softkin/_columns.py",
     "softkin/_configuration.py",
     "softkin/_core.py",
     "softkin/_coupled.py",
