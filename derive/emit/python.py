@@ -137,7 +137,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         every = array_method(kin)
         array_methods.append({"head": _every_head(every), "summary": every.summary, "body": array_lines(kin, every)})
         arrays.append(every)
-    helpers = array_helpers_in((line for m in array_methods for line in m["body"]), ("everywhere", "refused"))
+    helpers = array_helpers_in((line for m in array_methods for line in m["body"]), ("elsewhere", "refused", "Real"))
     array_context = {
         **names,
         "array_programs": array_programs,

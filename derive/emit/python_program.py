@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
@@ -12,6 +12,7 @@ from sympy.core.relational import Relational
 from derive.emit import python_calls
 from derive.emit.arms import Arms, Item, in_arms
 from derive.emit.expression import FUNCTION_KEYS
+from derive.emit.python_arms import array_arm_lines, fixed
 from derive.emit.python_layout import WIDTH, fold, taken_apart
 from derive.emit.python_loops import array_end, array_head, scalar_end, scalar_head, solve_lines
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, literal, spelled
@@ -28,6 +29,7 @@ from derive.program import (
     Solve,
     Status,
     expressions,
+    real,
     symbols_of,
 )
 
@@ -152,6 +154,7 @@ def array_statements(method: Method) -> list[str]:
         first = method.arguments[0]
         lines.append(f"status = passed({first.name}{'[0]' if first.kind == 'Rotation' else ''})")
     program = method.program
+    constants = fixed(program.body, {real(name) for name in constants_of(method)})
     for item, same in grouped(in_arms(program.body, [o.value for o in program.outputs])):
         if isinstance(item, Iterate):
             lines += [*array_head(item, _ARRAY), *_step(item, _ARRAY), *array_end(item, _ARRAY)]
@@ -162,16 +165,14 @@ def array_statements(method: Method) -> list[str]:
             for condition in (r.condition for r in same):
                 lines += fold(f"require(status, {_ARRAY.print(condition)}, Status.{item.otherwise.name})")
         else:
-            lines += _array_item_lines(item)
+            lines += _array_item_lines(item, constants)
     return lines
 
 
-def _array_item_lines(item: Item) -> list[str]:
-    """A binding, or a choice: where all rows are on its first side, nothing of the other is computed."""
+def _array_item_lines(item: Item, constants: Collection[sp.Symbol]) -> list[str]:
+    """A binding, or a choice."""
     if isinstance(item, Arms):
-        holds = [f"    {line}" for inner in item.holds for line in _array_item_lines(inner)]
-        flat = [f"    {line}" for let in item.flat for line in let_lines(let, _ARRAY)]
-        return [*fold(f"if everywhere({_ARRAY.print(item.condition)}):"), *holds, "else:", *flat]
+        return array_arm_lines(item, constants, lambda inner: _array_item_lines(inner, constants), _ARRAY)
     assert isinstance(item, Let | Solve)
     return binding_lines(item, _ARRAY)
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -15,7 +15,7 @@ from softkin._types import Status
 
 __all__ = [
     "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Vector",
-    "StartedPrograms", "Truth", "absolute", "advanced", "atan2", "cos", "everywhere", "initial", "nearest_on_arc", "nearest_period", "passed",
+    "StartedPrograms", "Truth", "absolute", "advanced", "atan2", "cos", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "passed",
     "refused", "require", "root", "select", "settled", "sin", "solve",
 ]  # fmt: skip
 
@@ -90,6 +90,24 @@ def require(status: Codes, condition: Truth, otherwise: Status) -> None:
 def everywhere(condition: Truth) -> bool:
     """Whether a condition holds in all rows."""
     return bool(condition.all()) if isinstance(condition, np.ndarray) else bool(condition)
+
+
+def elsewhere(condition: Truth, values: Reals, other: Callable[..., Reals], given: Reals) -> Reals:
+    """The values where a condition holds; in the other rows, what `other` makes of what is given there."""
+    if everywhere(condition):
+        return values
+    if not isinstance(condition, np.ndarray):
+        return other(*given)
+    rows = np.flatnonzero(~condition)
+    found = other(*[value[rows] if isinstance(value, np.ndarray) else value for value in given])
+    return tuple([_replaced(value, rows, new, condition.shape) for value, new in zip(values, found, strict=True)])
+
+
+def _replaced(value: Real, rows: NDArray[np.intp], new: Real, shape: tuple[int, ...]) -> Array:
+    """The values with new ones in some rows."""
+    whole = np.array(np.broadcast_to(value, shape))
+    whole[rows] = new
+    return whole
 
 
 def refused(status: Codes, refusal: Real) -> Codes:

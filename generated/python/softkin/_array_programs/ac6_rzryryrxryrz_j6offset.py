@@ -9,6 +9,7 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
@@ -16,7 +17,7 @@ from softkin._array import (
     advanced,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     initial,
     nearest_period,
     passed,
@@ -135,7 +136,10 @@ class ArrayPrograms(Programs):
         wrist_x_tried = x + j6_offset_x*r12_at_q6*sin_q6 - d6*r13_at_q5 - j6_offset_x*r11_at_q6*cos_q6
         wrist_y_tried = y + j6_offset_x*r22_at_q6*sin_q6 - d6*r23_at_q5 - j6_offset_x*r21_at_q6*cos_q6
         margin_shoulder_tried = (wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)/machine_scale
-        if everywhere(searched > 0.5):
+        branch_shoulder: Real
+        branch_elbow: Real
+        branch_wrist: Real
+        if searched > 0.5:
             branch_shoulder = margin_shoulder_tried
             sin_q3 = sin(q3)
             cos_q3 = cos(q3)
@@ -145,14 +149,12 @@ class ArrayPrograms(Programs):
             wrist_x_closed = x - d6*r13_at_q5  # the point that the last joints turn about
             wrist_y_closed = y - d6*r23_at_q5
             margin_shoulder_closed = (wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)/machine_scale
-            branch_shoulder = select(searched > 0.5, margin_shoulder_tried, margin_shoulder_closed)
+            branch_shoulder = margin_shoulder_closed
             sin_q3_closed = sin(q3)
             cos_q3_closed = cos(q3)
             margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_closed
-            sin_q3 = sin(q3)
-            cos_q3 = cos(q3)
-            branch_elbow = select(searched > 0.5, (a3*sin_q3 + d4*cos_q3)/machine_scale, margin_elbow_closed)
-            branch_wrist = select(searched > 0.5, sin_q4, cos_q5)
+            branch_elbow = margin_elbow_closed
+            branch_wrist = cos_q5
         r33_at_q4 = cos_q23*cos_q4
         r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
         cos_q2 = cos(q2)
@@ -297,26 +299,22 @@ class ArrayPrograms(Programs):
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         # q1: of the point from its axis
         distance_q1_closed = root(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
-        if everywhere(distance_q1_closed > 1e-11*machine_scale):
-            along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
-            cos_q1_closed = along_q1_closed/distance_q1_closed  # its reference where it is free
-            across_q1_closed = sigma_shoulder*wrist_y_closed
-            sin_q1_closed = across_q1_closed/distance_q1_closed
-        else:
-            along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
-            length_q1_closed = select(distance_q1_closed > 1e-11*machine_scale, distance_q1_closed, 1.0)
-            # its reference where it is free
-            cos_q1_closed = select(
-                distance_q1_closed > 1e-11*machine_scale,
-                along_q1_closed/length_q1_closed,
-                cos(free_a1),
-            )
-            across_q1_closed = sigma_shoulder*wrist_y_closed
-            sin_q1_closed = select(
-                distance_q1_closed > 1e-11*machine_scale,
-                across_q1_closed/length_q1_closed,
-                sin(free_a1),
-            )
+
+        def elsewhere_cos_q1_closed(free_a1: Real) -> Reals:
+            cos_q1_closed = cos(free_a1)  # its reference where it is free
+            sin_q1_closed = sin(free_a1)
+            return (cos_q1_closed, sin_q1_closed)
+
+        along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
+        cos_q1_closed = along_q1_closed/distance_q1_closed  # its reference where it is free
+        across_q1_closed = sigma_shoulder*wrist_y_closed
+        sin_q1_closed = across_q1_closed/distance_q1_closed
+        cos_q1_closed, sin_q1_closed = elsewhere(
+            distance_q1_closed > 1e-11*machine_scale,
+            (cos_q1_closed, sin_q1_closed),
+            elsewhere_cos_q1_closed,
+            (free_a1,),
+        )
         # what the unknown links must span
         wrist_x_from_q1_closed = wrist_x_closed*cos_q1_closed + wrist_y_closed*sin_q1_closed - a1
         wrist_z_closed = z - d6*r33
@@ -515,7 +513,19 @@ class ArrayPrograms(Programs):
         require(status, done, Status.UNREACHABLE)
         # A6: the search along it finds no root of this branch
         require(status, (accepted > 0.5) | (searched < 0.5), Status.UNREACHABLE)
-        if everywhere(searched > 0.5):
+        cos_q1: Real
+        sin_q1: Real
+        cos_q2: Real
+        sin_q2: Real
+        cos_q3: Real
+        sin_q3: Real
+        cos_q4: Real
+        sin_q4: Real
+        cos_q5: Real
+        sin_q5: Real
+        cos_q6: Real
+        sin_q6: Real
+        if searched > 0.5:
             cos_q1 = cos_q1_tried
             sin_q1 = sin_q1_tried
             cos_q2 = cos_q2_tried
@@ -529,35 +539,36 @@ class ArrayPrograms(Programs):
             cos_q6 = cos_q6_tried
             sin_q6 = sin_q6_tried
         else:
-            cos_q1 = select(searched > 0.5, cos_q1_tried, cos_q1_closed)
-            sin_q1 = select(searched > 0.5, sin_q1_tried, sin_q1_closed)
             cos_swing_q3_closed = (
                 (reach_closed*reach_closed - a2*a2 - effective_q3_closed*effective_q3_closed)/swing_scale_q3_closed
             )
             sin_swing_q3_closed = root(sine_square_q3_closed)*sigma_elbow
             cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
             sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
+
+            def elsewhere_cos_q2_closed(free_a2: Real) -> Reals:
+                cos_q2_closed = cos(free_a2)  # its reference where it is free
+                sin_q2_closed = sin(free_a2)
+                return (cos_q2_closed, sin_q2_closed)
+
             arm_along_q2_closed = a3*sin_q3_closed + d4*cos_q3_closed
             arm_across_q2_closed = a2 + a3*cos_q3_closed - d4*sin_q3_closed
             # q2: linear pair in the x_from_q1 and z_from_q1 equations
             along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
             across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
             length_q2_closed = select(
-                (
-                    (reach_closed > 1e-11*machine_scale)
-                    & (across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed > 0.0)
-                ),
+                across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed > 0.0,
                 root(across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed),
                 1.0,
             )
-            # its reference where it is free
-            cos_q2_closed = select(reach_closed > 1e-11*machine_scale, along_q2_closed/length_q2_closed, cos(free_a2))
-            cos_q2 = select(searched > 0.5, cos_q2_tried, cos_q2_closed)
-            sin_q2_closed = select(reach_closed > 1e-11*machine_scale, across_q2_closed/length_q2_closed, sin(free_a2))
-            sin_q2 = select(searched > 0.5, sin_q2_tried, sin_q2_closed)
-            cos_q3 = select(searched > 0.5, cos_q3_tried, cos_q3_closed)
-            sin_q3 = select(searched > 0.5, sin_q3_tried, sin_q3_closed)
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            cos_q2_closed = along_q2_closed/length_q2_closed  # its reference where it is free
+            sin_q2_closed = across_q2_closed/length_q2_closed
+            cos_q2_closed, sin_q2_closed = elsewhere(
+                reach_closed > 1e-11*machine_scale,
+                (cos_q2_closed, sin_q2_closed),
+                elsewhere_cos_q2_closed,
+                (free_a2,),
+            )
             r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
             sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
             cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
@@ -565,28 +576,45 @@ class ArrayPrograms(Programs):
             r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
             # q4: direction and distance of a point
             radius_q4_closed = root(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
+
+            def elsewhere_cos_q4_closed(ref_a4: Real) -> Reals:
+                free_a4 = (ref_a4 - offset_a4)*DEGREE
+                cos_q4_closed = cos(free_a4)  # its reference where it is free
+                sin_q4_closed = sin(free_a4)
+                return (cos_q4_closed, sin_q4_closed)
+
             along_q4_closed = r33_from_q123_closed*sigma_wrist  # q4: polar angle in the r33 and r23 equations
-            length_q4_closed = select(radius_q4_closed > 1e-11, radius_q4_closed, 1.0)
-            # its reference where it is free
-            cos_q4_closed = select(radius_q4_closed > 1e-11, along_q4_closed/length_q4_closed, cos(free_a4))
-            cos_q4 = select(searched > 0.5, r22_from_q1_before_q6_tried, cos_q4_closed)
+            cos_q4_closed = along_q4_closed/radius_q4_closed  # its reference where it is free
             across_q4_closed = -r23_from_q1_closed*sigma_wrist
-            sin_q4_closed = select(radius_q4_closed > 1e-11, across_q4_closed/length_q4_closed, sin(free_a4))
-            sin_q4 = select(searched > 0.5, q5_radius_of_q4_tried, sin_q4_closed)
+            sin_q4_closed = across_q4_closed/radius_q4_closed
+            cos_q4_closed, sin_q4_closed = elsewhere(
+                radius_q4_closed > 1e-11,
+                (cos_q4_closed, sin_q4_closed),
+                elsewhere_cos_q4_closed,
+                (ref_a4,),
+            )
+            cos_q1 = cos_q1_closed
+            sin_q1 = sin_q1_closed
+            cos_q2 = cos_q2_closed
+            sin_q2 = sin_q2_closed
+            cos_q3 = cos_q3_closed
+            sin_q3 = sin_q3_closed
+            cos_q4 = cos_q4_closed
+            sin_q4 = sin_q4_closed
             q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
-            cos_q5 = select(searched > 0.5, cos_q5_tried, q4_radius_of_q5_closed)
+            cos_q5 = q4_radius_of_q5_closed
             r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
-            sin_q5 = select(searched > 0.5, sin_q5_tried, r13_from_q123_closed)
+            sin_q5 = r13_from_q123_closed
             r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
             r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
             r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
             r22_from_q1234_closed = r22_from_q1_closed*cos_q4_closed + r32_from_q123_closed*sin_q4_closed
-            cos_q6 = select(searched > 0.5, cos_q6_tried, r22_from_q1234_closed)
+            cos_q6 = r22_from_q1234_closed
             r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
             r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
             r31_from_q123_closed = r31*cos_q23_closed + r11_from_q1_closed*sin_q23_closed
             r21_from_q1234_closed = r21_from_q1_closed*cos_q4_closed + r31_from_q123_closed*sin_q4_closed
-            sin_q6 = select(searched > 0.5, sin_q6_tried, r21_from_q1234_closed)
+            sin_q6 = r21_from_q1234_closed
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,

@@ -10,13 +10,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_on_arc,
     nearest_period,
     passed,
@@ -217,42 +218,38 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1 = -root(sine_square_q1)*sigma_shoulder
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
-            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1 = -root(sine_square_q1)*sigma_shoulder
-            # its reference where it is free
-            cos_q1 = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1 = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1,
-                sin(free_a1),
-            )
+            cos_q1 = cos(free_a1)  # its reference where it is free
+            sin_q1 = sin(free_a1)
+            return (cos_q1, sin_q1)
+
+        cos_swing_q1 = -d4/divisor_q1
+        sin_swing_q1 = -root(sine_square_q1)*sigma_shoulder
+        cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+        sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+        cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = root(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
-        if everywhere(radius_q6 > 1e-11):
-            along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
-            cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
-            across_q6 = r22_from_q1*sigma_wrist
-            sin_q6_before_q6_of_q3 = across_q6/radius_q6
-        else:
+
+        def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
-            length_q6 = select(radius_q6 > 1e-11, radius_q6, 1.0)
-            # its reference where it is free
-            cos_q6_before_q6_of_q3 = select(radius_q6 > 1e-11, along_q6/length_q6, cos(free_a6))
-            across_q6 = r22_from_q1*sigma_wrist
-            sin_q6_before_q6_of_q3 = select(radius_q6 > 1e-11, across_q6/length_q6, sin(free_a6))
+            cos_q6_before_q6_of_q3 = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3 = sin(free_a6)
+            return (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3)
+
+        along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
+        cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
+        across_q6 = r22_from_q1*sigma_wrist
+        sin_q6_before_q6_of_q3 = across_q6/radius_q6
+        cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
+            radius_q6 > 1e-11,
+            (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
+            elsewhere_cos_q6_before_q6_of_q3,
+            (ref_a6,),
+        )
         q6_radius_of_q5 = radius_q6*sigma_wrist
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         cos_q5 = -r23_from_q1  # q5: linear pair in the q6 radius and r32 equations
@@ -275,10 +272,12 @@ class ArrayPrograms(Programs):
         value_q6_of_q3 = (
             wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
         )
-        if everywhere(absolute(value_q6_of_q3) <= size_q6_of_q3):
-            cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-            sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
-        else:
+
+        def elsewhere_cos_q6(
+            cos_q6_before_q6_of_q3: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
+            wrist_x_from_q1_across: Real, wrist_x_from_q1_along: Real, wrist_x_from_q1_fixed: Real,
+            wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
+        ) -> Reals:
             along_q6_of_q3 = (
                 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             )
@@ -286,37 +285,40 @@ class ArrayPrograms(Programs):
                 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )
             swing_q6_of_q3 = root(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+
+            def elsewhere_highest_q6_of_q3() -> Reals:
+                highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
+                lowest_q6_of_q3 = -1.0
+                return (highest_q6_of_q3, lowest_q6_of_q3)
+
             level_q6_of_q3 = (
                 value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
             )
-            divisor_q6_of_q3 = select(swing_q6_of_q3 > 1e-12*size_q6_of_q3, swing_q6_of_q3, 1.0)
             # the arc: cosines from its centre
             highest_q6_of_q3 = select(
-                swing_q6_of_q3 > 1e-12*size_q6_of_q3,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3 > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3 < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3,
-                    ),
-                ),
+                (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0,
                 1.0,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0, -1.0,
+                    (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3,
+                ),
+            )
+            lowest_q6_of_q3 = select(
+                (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0,
+                1.0,
+                select(
+                    (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0,
+                    -1.0,
+                    (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3,
+                ),
+            )
+            highest_q6_of_q3, lowest_q6_of_q3 = elsewhere(
+                swing_q6_of_q3 > 1e-12*size_q6_of_q3,
+                (highest_q6_of_q3, lowest_q6_of_q3),
+                elsewhere_highest_q6_of_q3,
+                (),
             )
             near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-            lowest_q6_of_q3 = select(
-                swing_q6_of_q3 > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3 > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3 < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3,
-                    ),
-                ),
-                -1.0,
-            )
             far_q6_of_q3 = atan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
             centre_q6_of_q3 = atan2(across_q6_of_q3, along_q6_of_q3)
             angle_q6_of_q3 = atan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
@@ -337,15 +339,34 @@ class ArrayPrograms(Programs):
                 )
                 *radius_q6
             )
-            stays_q6_of_q3 = select(
-                absolute(value_q6_of_q3) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11), 1.0, 0.0),
+
+            def elsewhere_cos_q6(cos_q6_after_q6_of_q3: Real, sin_q6_after_q6_of_q3: Real) -> Reals:
+                cos_q6 = cos_q6_after_q6_of_q3  # moved to where the rest can be reached
+                sin_q6 = sin_q6_after_q6_of_q3  # moved to where the rest can be reached
+                return (cos_q6, sin_q6)
+
+            cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
+            sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+            cos_q6, sin_q6 = elsewhere(
+                (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11),
+                (cos_q6, sin_q6),
+                elsewhere_cos_q6,
+                (cos_q6_after_q6_of_q3, sin_q6_after_q6_of_q3),
             )
-            # moved to where the rest can be reached
-            cos_q6 = select(stays_q6_of_q3 > 0.0, cos_q6_before_q6_of_q3, cos_q6_after_q6_of_q3)
-            # moved to where the rest can be reached
-            sin_q6 = select(stays_q6_of_q3 > 0.0, sin_q6_before_q6_of_q3, sin_q6_after_q6_of_q3)
+            return (cos_q6, sin_q6)
+
+        cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
+        sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+        cos_q6, sin_q6 = elsewhere(
+            absolute(value_q6_of_q3) <= size_q6_of_q3,
+            (cos_q6, sin_q6),
+            elsewhere_cos_q6,
+            (
+                cos_q6_before_q6_of_q3, radius_q6, sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_x_from_q1_across,
+                wrist_x_from_q1_along, wrist_x_from_q1_fixed, wrist_y_from_q1_across, wrist_y_from_q1_along,
+                wrist_y_from_q1_fixed,
+            ),
+        )
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
         # what the unknown links must span
@@ -359,34 +380,26 @@ class ArrayPrograms(Programs):
         require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
         cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
         sin_q3 = root(sine_square_q3)*sigma_elbow
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                across_q2*across_q2 + along_q2*along_q2 > 0.0,
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
-        else:
+
+        def elsewhere_cos_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
-            sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
+            cos_q2 = cos(free_a2)  # its reference where it is free
+            sin_q2 = sin(free_a2)
+            return (cos_q2, sin_q2)
+
+        arm_along_q2 = a2 + a3*cos_q3
+        arm_across_q2 = a3*sin_q3
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        length_q2 = select(
+            across_q2*across_q2 + along_q2*along_q2 > 0.0,
+            root(across_q2*across_q2 + along_q2*along_q2),
+            1.0,
+        )
+        cos_q2 = along_q2/length_q2  # its reference where it is free
+        sin_q2 = across_q2/length_q2
+        cos_q2, sin_q2 = elsewhere(reach > 1e-11*machine_scale, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -547,69 +560,60 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1_left = -root(sine_square_q1)
-            cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_left = (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1
-            cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
-            sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1_left(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1_left = -root(sine_square_q1)
-            # its reference where it is free
-            cos_q1_left = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_left = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1,
-                sin(free_a1),
-            )
-            # its reference where it is free
-            cos_q1_right = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_right = select(
-                distance_q1 > 1e-11*machine_scale,
-                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1,
-                sin(free_a1),
-            )
+            cos_q1_left = cos(free_a1)  # its reference where it is free
+            sin_q1_left = sin(free_a1)
+            cos_q1_right = cos_q1_left  # its reference where it is free
+            sin_q1_right = sin_q1_left
+            return (cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right)
+
+        cos_swing_q1 = -d4/divisor_q1
+        sin_swing_q1_left = -root(sine_square_q1)
+        cos_q1_left = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
+        sin_q1_left = (wrist_y*sin_swing_q1_left - wrist_x*cos_swing_q1)/divisor_q1
+        cos_q1_right = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_left)/divisor_q1  # its reference where it is free
+        sin_q1_right = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_left)/divisor_q1
+        cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right = elsewhere(
+            distance_q1 > 1e-11*machine_scale,
+            (cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right),
+            elsewhere_cos_q1_left,
+            (ref_a1,),
+        )
         r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
         r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
         # q6: direction and distance of a point
         radius_q6_left = root(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
-        if everywhere(radius_q6_left > 1e-11):
-            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
-            cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down
-        else:
+
+        def elsewhere_cos_q6_before_q6_of_q3_left_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            length_q6_left = select(radius_q6_left > 1e-11, radius_q6_left, 1.0)
-            # its reference where it is free
-            cos_q6_before_q6_of_q3_left_down = select(
-                radius_q6_left > 1e-11,
-                -r21_from_q1_left/length_q6_left,
-                cos(free_a6),
+            cos_q6_before_q6_of_q3_left_down = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_left_up = cos_q6_before_q6_of_q3_left_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_up = sin_q6_before_q6_of_q3_left_down
+            return (
+                cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
+                sin_q6_before_q6_of_q3_left_up,
             )
-            sin_q6_before_q6_of_q3_left_down = select(
-                radius_q6_left > 1e-11,
-                r22_from_q1_left/length_q6_left,
-                sin(free_a6),
-            )
-            # its reference where it is free
-            cos_q6_before_q6_of_q3_left_up = select(radius_q6_left > 1e-11, r21_from_q1_left/length_q6_left, cos(free_a6))
-            sin_q6_before_q6_of_q3_left_up = select(
-                radius_q6_left > 1e-11,
-                -r22_from_q1_left/length_q6_left,
-                sin(free_a6),
-            )
+
+        cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
+        sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
+        cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down  # its reference where it is free
+        sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down
+        found = elsewhere(
+            radius_q6_left > 1e-11,
+            (
+                cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
+                sin_q6_before_q6_of_q3_left_up,
+            ),
+            elsewhere_cos_q6_before_q6_of_q3_left_down,
+            (ref_a6,),
+        )
+        (
+            cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
+            sin_q6_before_q6_of_q3_left_up,
+        ) = found
         r23_from_q1_left = r23*cos_q1_left - r13*sin_q1_left
         wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
         wrist_x_from_q1_along_left = d5*r23_from_q1_left*r31
@@ -631,10 +635,13 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_here_left_down*wrist_x_from_q1_here_left_down
             + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2*a2 - a3*a3
         )
-        if everywhere(absolute(value_q6_of_q3_left_down) <= size_q6_of_q3):
-            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-        else:
+
+        def elsewhere_cos_q6_left_down(
+            cos_q6_before_q6_of_q3_left_down: Real, radius_q6_left: Real, sin_q6_before_q6_of_q3_left_down: Real,
+            value_q6_of_q3_left_down: Real, wrist_x_from_q1_across_left: Real, wrist_x_from_q1_along_left: Real,
+            wrist_x_from_q1_fixed_left_down: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+            wrist_y_from_q1_fixed: Real,
+        ) -> Reals:
             along_q6_of_q3_left_down = (
                 2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_down
                 + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
@@ -646,42 +653,43 @@ class ArrayPrograms(Programs):
             swing_q6_of_q3_left_down = root(
                 across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
             )
+
+            def elsewhere_highest_q6_of_q3_left_down() -> Reals:
+                highest_q6_of_q3_left_down = 1.0  # the arc: cosines from its centre
+                lowest_q6_of_q3_left_down = -1.0
+                return (highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down)
+
             level_q6_of_q3_left_down = (
                 value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
                 - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
             )
-            divisor_q6_of_q3_left_down = select(
-                swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3, swing_q6_of_q3_left_down, 1.0,
-            )
             # the arc: cosines from its centre
             highest_q6_of_q3_left_down = select(
-                swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3_left_down)/divisor_q6_of_q3_left_down > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3_left_down)/divisor_q6_of_q3_left_down < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_left_down)/divisor_q6_of_q3_left_down,
-                    ),
-                ),
+                (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down > 1.0,
                 1.0,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down < -1.0, -1.0,
+                    (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down,
+                ),
+            )
+            lowest_q6_of_q3_left_down = select(
+                (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down > 1.0,
+                1.0,
+                select(
+                    (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down < -1.0,
+                    -1.0,
+                    (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down,
+                ),
+            )
+            highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down = elsewhere(
+                swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3,
+                (highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down),
+                elsewhere_highest_q6_of_q3_left_down,
+                (),
             )
             near_q6_of_q3_left_down = atan2(
                 root((1.0 - highest_q6_of_q3_left_down)*(1.0 + highest_q6_of_q3_left_down)),
                 highest_q6_of_q3_left_down,
-            )
-            lowest_q6_of_q3_left_down = select(
-                swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3_left_down - size_q6_of_q3)/divisor_q6_of_q3_left_down > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3_left_down - size_q6_of_q3)/divisor_q6_of_q3_left_down < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_left_down - size_q6_of_q3)/divisor_q6_of_q3_left_down,
-                    ),
-                ),
-                -1.0,
             )
             far_q6_of_q3_left_down = atan2(
                 root((1.0 - lowest_q6_of_q3_left_down)*(1.0 + lowest_q6_of_q3_left_down)),
@@ -719,19 +727,36 @@ class ArrayPrograms(Programs):
                 )
                 *radius_q6_left
             )
-            stays_q6_of_q3_left_down = select(
-                absolute(value_q6_of_q3_left_down) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left > 1e-11), 1.0, 0.0),
+
+            def elsewhere_cos_q6_left_down(
+                cos_q6_after_q6_of_q3_left_down: Real, sin_q6_after_q6_of_q3_left_down: Real,
+            ) -> Reals:
+                cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
+                sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
+                return (cos_q6_left_down, sin_q6_left_down)
+
+            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+            cos_q6_left_down, sin_q6_left_down = elsewhere(
+                (cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left > 1e-11),
+                (cos_q6_left_down, sin_q6_left_down),
+                elsewhere_cos_q6_left_down,
+                (cos_q6_after_q6_of_q3_left_down, sin_q6_after_q6_of_q3_left_down),
             )
-            # moved to where the rest can be reached
-            cos_q6_left_down = select(
-                stays_q6_of_q3_left_down > 0.0, cos_q6_before_q6_of_q3_left_down, cos_q6_after_q6_of_q3_left_down,
-            )
-            # moved to where the rest can be reached
-            sin_q6_left_down = select(
-                stays_q6_of_q3_left_down > 0.0, sin_q6_before_q6_of_q3_left_down, sin_q6_after_q6_of_q3_left_down,
-            )
+            return (cos_q6_left_down, sin_q6_left_down)
+
+        cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+        sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+        cos_q6_left_down, sin_q6_left_down = elsewhere(
+            absolute(value_q6_of_q3_left_down) <= size_q6_of_q3,
+            (cos_q6_left_down, sin_q6_left_down),
+            elsewhere_cos_q6_left_down,
+            (
+                cos_q6_before_q6_of_q3_left_down, radius_q6_left, sin_q6_before_q6_of_q3_left_down,
+                value_q6_of_q3_left_down, wrist_x_from_q1_across_left, wrist_x_from_q1_along_left,
+                wrist_x_from_q1_fixed_left_down, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+            ),
+        )
         r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
         r21_from_q1_before_q56_left_down = -r21_from_q1_before_q6_left_down*r23_from_q1_left - r33*radius_q6_left
         # what the unknown links must span
@@ -749,133 +774,90 @@ class ArrayPrograms(Programs):
         )
         cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
         sin_q3_left_up_down = root(sine_square_q3_left_down)
-        if everywhere(reach_left_down > 1e-11*machine_scale):
-            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_down = (
-                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
-            )
-            across_q2_left_up_down = (
-                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
-            )
-            length_q2_squared_left_up_down = (
-                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
-            )
-            length_q2_left_up_down = select(
-                length_q2_squared_left_up_down > 0.0,
-                root(length_q2_squared_left_up_down),
-                1.0,
-            )
-            cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
-            sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_down = (
-                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
-            )
-            across_q2_left_down_down = (
-                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
-            )
-            length_q2_squared_left_down_down = (
-                across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
-            )
-            length_q2_left_down_down = select(
-                length_q2_squared_left_down_down > 0.0,
-                root(length_q2_squared_left_down_down),
-                1.0,
-            )
-            cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
-            sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
-        else:
+
+        def elsewhere_cos_q2_left_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_down = (
-                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
-            )
-            across_q2_left_up_down = (
-                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
-            )
-            length_q2_squared_left_up_down = (
-                across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
-            )
-            length_q2_left_up_down = select(
-                (length_q2_squared_left_up_down > 0.0) & (reach_left_down > 1e-11*machine_scale),
-                root(length_q2_squared_left_up_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_up_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                along_q2_left_up_down/length_q2_left_up_down,
-                cos(free_a2),
-            )
-            sin_q2_left_up_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                across_q2_left_up_down/length_q2_left_up_down,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_down = (
-                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
-            )
-            across_q2_left_down_down = (
-                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
-            )
-            length_q2_squared_left_down_down = (
-                across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
-            )
-            length_q2_left_down_down = select(
-                (length_q2_squared_left_down_down > 0.0) & (reach_left_down > 1e-11*machine_scale),
-                root(length_q2_squared_left_down_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_down_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                along_q2_left_down_down/length_q2_left_down_down,
-                cos(free_a2),
-            )
-            sin_q2_left_down_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                across_q2_left_down_down/length_q2_left_down_down,
-                sin(free_a2),
-            )
+            cos_q2_left_up_down = cos(free_a2)  # its reference where it is free
+            sin_q2_left_up_down = sin(free_a2)
+            cos_q2_left_down_down = cos_q2_left_up_down  # its reference where it is free
+            sin_q2_left_down_down = sin_q2_left_up_down
+            return (cos_q2_left_up_down, sin_q2_left_up_down, cos_q2_left_down_down, sin_q2_left_down_down)
+
+        arm_along_q2_left_down = a2 + a3*cos_q3_left_down
+        arm_across_q2_left_up_down = a3*sin_q3_left_up_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_left_up_down = (
+            arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
+        )
+        across_q2_left_up_down = (
+            arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
+        )
+        length_q2_squared_left_up_down = (
+            across_q2_left_up_down*across_q2_left_up_down + along_q2_left_up_down*along_q2_left_up_down
+        )
+        length_q2_left_up_down = select(
+            length_q2_squared_left_up_down > 0.0,
+            root(length_q2_squared_left_up_down),
+            1.0,
+        )
+        cos_q2_left_up_down = along_q2_left_up_down/length_q2_left_up_down  # its reference where it is free
+        sin_q2_left_up_down = across_q2_left_up_down/length_q2_left_up_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_left_down_down = (
+            arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
+        )
+        across_q2_left_down_down = (
+            arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
+        )
+        length_q2_squared_left_down_down = (
+            across_q2_left_down_down*across_q2_left_down_down + along_q2_left_down_down*along_q2_left_down_down
+        )
+        length_q2_left_down_down = select(
+            length_q2_squared_left_down_down > 0.0,
+            root(length_q2_squared_left_down_down),
+            1.0,
+        )
+        cos_q2_left_down_down = along_q2_left_down_down/length_q2_left_down_down  # its reference where it is free
+        sin_q2_left_down_down = across_q2_left_down_down/length_q2_left_down_down
+        cos_q2_left_up_down, sin_q2_left_up_down, cos_q2_left_down_down, sin_q2_left_down_down = elsewhere(
+            reach_left_down > 1e-11*machine_scale,
+            (cos_q2_left_up_down, sin_q2_left_up_down, cos_q2_left_down_down, sin_q2_left_down_down),
+            elsewhere_cos_q2_left_up_down,
+            (ref_a2,),
+        )
         r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
         r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
         # q6: direction and distance of a point
         radius_q6_right = root(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
-        if everywhere(radius_q6_right > 1e-11):
-            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
-            cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down
-        else:
+
+        def elsewhere_cos_q6_before_q6_of_q3_right_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            length_q6_right = select(radius_q6_right > 1e-11, radius_q6_right, 1.0)
-            # its reference where it is free
-            cos_q6_before_q6_of_q3_right_down = select(
-                radius_q6_right > 1e-11,
-                -r21_from_q1_right/length_q6_right,
-                cos(free_a6),
+            cos_q6_before_q6_of_q3_right_down = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_right_up = cos_q6_before_q6_of_q3_right_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_up = sin_q6_before_q6_of_q3_right_down
+            return (
+                cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up,
+                sin_q6_before_q6_of_q3_right_up,
             )
-            sin_q6_before_q6_of_q3_right_down = select(
-                radius_q6_right > 1e-11,
-                r22_from_q1_right/length_q6_right,
-                sin(free_a6),
-            )
-            # its reference where it is free
-            cos_q6_before_q6_of_q3_right_up = select(
-                radius_q6_right > 1e-11,
-                r21_from_q1_right/length_q6_right,
-                cos(free_a6),
-            )
-            sin_q6_before_q6_of_q3_right_up = select(
-                radius_q6_right > 1e-11,
-                -r22_from_q1_right/length_q6_right,
-                sin(free_a6),
-            )
+
+        cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
+        sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
+        cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down  # its reference where it is free
+        sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down
+        found = elsewhere(
+            radius_q6_right > 1e-11,
+            (
+                cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up,
+                sin_q6_before_q6_of_q3_right_up,
+            ),
+            elsewhere_cos_q6_before_q6_of_q3_right_down,
+            (ref_a6,),
+        )
+        (
+            cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up,
+            sin_q6_before_q6_of_q3_right_up,
+        ) = found
         r23_from_q1_right = r23*cos_q1_right - r13*sin_q1_right
         wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
         wrist_x_from_q1_along_right = d5*r23_from_q1_right*r31
@@ -893,10 +875,13 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
             + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2*a2 - a3*a3
         )
-        if everywhere(absolute(value_q6_of_q3_right_down) <= size_q6_of_q3):
-            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-        else:
+
+        def elsewhere_cos_q6_right_down(
+            cos_q6_before_q6_of_q3_right_down: Real, radius_q6_right: Real, sin_q6_before_q6_of_q3_right_down: Real,
+            value_q6_of_q3_right_down: Real, wrist_x_from_q1_across_right: Real, wrist_x_from_q1_along_right: Real,
+            wrist_x_from_q1_fixed_right_down: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+            wrist_y_from_q1_fixed: Real,
+        ) -> Reals:
             along_q6_of_q3_right_down = (
                 2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
                 + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
@@ -909,42 +894,43 @@ class ArrayPrograms(Programs):
                 across_q6_of_q3_right_down*across_q6_of_q3_right_down
                 + along_q6_of_q3_right_down*along_q6_of_q3_right_down
             )
+
+            def elsewhere_highest_q6_of_q3_right_down() -> Reals:
+                highest_q6_of_q3_right_down = 1.0  # the arc: cosines from its centre
+                lowest_q6_of_q3_right_down = -1.0
+                return (highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down)
+
             level_q6_of_q3_right_down = (
                 value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
                 - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
             )
-            divisor_q6_of_q3_right_down = select(
-                swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3, swing_q6_of_q3_right_down, 1.0,
-            )
             # the arc: cosines from its centre
             highest_q6_of_q3_right_down = select(
-                swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3_right_down)/divisor_q6_of_q3_right_down > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3_right_down)/divisor_q6_of_q3_right_down < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_right_down)/divisor_q6_of_q3_right_down,
-                    ),
-                ),
+                (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down > 1.0,
                 1.0,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down < -1.0, -1.0,
+                    (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down,
+                ),
+            )
+            lowest_q6_of_q3_right_down = select(
+                (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down > 1.0,
+                1.0,
+                select(
+                    (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down < -1.0,
+                    -1.0,
+                    (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down,
+                ),
+            )
+            highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down = elsewhere(
+                swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3,
+                (highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down),
+                elsewhere_highest_q6_of_q3_right_down,
+                (),
             )
             near_q6_of_q3_right_down = atan2(
                 root((1.0 - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)),
                 highest_q6_of_q3_right_down,
-            )
-            lowest_q6_of_q3_right_down = select(
-                swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3_right_down - size_q6_of_q3)/divisor_q6_of_q3_right_down > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3_right_down - size_q6_of_q3)/divisor_q6_of_q3_right_down < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_right_down - size_q6_of_q3)/divisor_q6_of_q3_right_down,
-                    ),
-                ),
-                -1.0,
             )
             far_q6_of_q3_right_down = atan2(
                 root((1.0 - lowest_q6_of_q3_right_down)*(1.0 + lowest_q6_of_q3_right_down)),
@@ -982,19 +968,37 @@ class ArrayPrograms(Programs):
                 )
                 *radius_q6_right
             )
-            stays_q6_of_q3_right_down = select(
-                absolute(value_q6_of_q3_right_down) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right > 1e-11), 1.0, 0.0),
+
+            def elsewhere_cos_q6_right_down(
+                cos_q6_after_q6_of_q3_right_down: Real, sin_q6_after_q6_of_q3_right_down: Real,
+            ) -> Reals:
+                cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
+                sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
+                return (cos_q6_right_down, sin_q6_right_down)
+
+            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            cos_q6_right_down, sin_q6_right_down = elsewhere(
+                (cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right > 1e-11),
+                (cos_q6_right_down, sin_q6_right_down),
+                elsewhere_cos_q6_right_down,
+                (cos_q6_after_q6_of_q3_right_down, sin_q6_after_q6_of_q3_right_down),
             )
-            # moved to where the rest can be reached
-            cos_q6_right_down = select(
-                stays_q6_of_q3_right_down > 0.0, cos_q6_before_q6_of_q3_right_down, cos_q6_after_q6_of_q3_right_down,
-            )
-            # moved to where the rest can be reached
-            sin_q6_right_down = select(
-                stays_q6_of_q3_right_down > 0.0, sin_q6_before_q6_of_q3_right_down, sin_q6_after_q6_of_q3_right_down,
-            )
+            return (cos_q6_right_down, sin_q6_right_down)
+
+        cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+        sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+        cos_q6_right_down, sin_q6_right_down = elsewhere(
+            absolute(value_q6_of_q3_right_down) <= size_q6_of_q3,
+            (cos_q6_right_down, sin_q6_right_down),
+            elsewhere_cos_q6_right_down,
+            (
+                cos_q6_before_q6_of_q3_right_down, radius_q6_right, sin_q6_before_q6_of_q3_right_down,
+                value_q6_of_q3_right_down, wrist_x_from_q1_across_right, wrist_x_from_q1_along_right,
+                wrist_x_from_q1_fixed_right_down, wrist_y_from_q1_across, wrist_y_from_q1_along,
+                wrist_y_from_q1_fixed,
+            ),
+        )
         r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
         r21_from_q1_before_q56_right_down = -r21_from_q1_before_q6_right_down*r23_from_q1_right - r33*radius_q6_right
         # what the unknown links must span
@@ -1015,107 +1019,61 @@ class ArrayPrograms(Programs):
         )
         cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
         sin_q3_right_up_down = root(sine_square_q3_right_down)
-        if everywhere(reach_right_down > 1e-11*machine_scale):
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_down = (
-                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                + arm_along_q2_right_down*wrist_x_from_q1_right_down
-            )
-            across_q2_right_up_down = (
-                arm_along_q2_right_down*wrist_y_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            )
-            length_q2_squared_right_up_down = (
-                across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
-            )
-            length_q2_right_up_down = select(
-                length_q2_squared_right_up_down > 0.0,
-                root(length_q2_squared_right_up_down),
-                1.0,
-            )
-            cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
-            sin_q2_right_up_down = across_q2_right_up_down/length_q2_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_down = (
-                arm_along_q2_right_down*wrist_x_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            )
-            across_q2_right_down_down = (
-                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                + arm_along_q2_right_down*wrist_y_from_q1_right_down
-            )
-            length_q2_squared_right_down_down = (
-                across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
-            )
-            length_q2_right_down_down = select(
-                length_q2_squared_right_down_down > 0.0,
-                root(length_q2_squared_right_down_down),
-                1.0,
-            )
-            cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
-            sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
-        else:
+
+        def elsewhere_cos_q2_right_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_down = (
-                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                + arm_along_q2_right_down*wrist_x_from_q1_right_down
-            )
-            across_q2_right_up_down = (
-                arm_along_q2_right_down*wrist_y_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            )
-            length_q2_squared_right_up_down = (
-                across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
-            )
-            length_q2_right_up_down = select(
-                (length_q2_squared_right_up_down > 0.0) & (reach_right_down > 1e-11*machine_scale),
-                root(length_q2_squared_right_up_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_right_up_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                along_q2_right_up_down/length_q2_right_up_down,
-                cos(free_a2),
-            )
-            sin_q2_right_up_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                across_q2_right_up_down/length_q2_right_up_down,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_down = (
-                arm_along_q2_right_down*wrist_x_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            )
-            across_q2_right_down_down = (
-                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                + arm_along_q2_right_down*wrist_y_from_q1_right_down
-            )
-            length_q2_squared_right_down_down = (
-                across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
-            )
-            length_q2_right_down_down = select(
-                (length_q2_squared_right_down_down > 0.0) & (reach_right_down > 1e-11*machine_scale),
-                root(length_q2_squared_right_down_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_right_down_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                along_q2_right_down_down/length_q2_right_down_down,
-                cos(free_a2),
-            )
-            sin_q2_right_down_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                across_q2_right_down_down/length_q2_right_down_down,
-                sin(free_a2),
-            )
+            cos_q2_right_up_down = cos(free_a2)  # its reference where it is free
+            sin_q2_right_up_down = sin(free_a2)
+            cos_q2_right_down_down = cos_q2_right_up_down  # its reference where it is free
+            sin_q2_right_down_down = sin_q2_right_up_down
+            return (cos_q2_right_up_down, sin_q2_right_up_down, cos_q2_right_down_down, sin_q2_right_down_down)
+
+        arm_along_q2_right_down = a2 + a3*cos_q3_right_down
+        arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_right_up_down = (
+            arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+            + arm_along_q2_right_down*wrist_x_from_q1_right_down
+        )
+        across_q2_right_up_down = (
+            arm_along_q2_right_down*wrist_y_from_q1_right_down
+            - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+        )
+        length_q2_squared_right_up_down = (
+            across_q2_right_up_down*across_q2_right_up_down + along_q2_right_up_down*along_q2_right_up_down
+        )
+        length_q2_right_up_down = select(
+            length_q2_squared_right_up_down > 0.0,
+            root(length_q2_squared_right_up_down),
+            1.0,
+        )
+        cos_q2_right_up_down = along_q2_right_up_down/length_q2_right_up_down  # its reference where it is free
+        sin_q2_right_up_down = across_q2_right_up_down/length_q2_right_up_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_right_down_down = (
+            arm_along_q2_right_down*wrist_x_from_q1_right_down
+            - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+        )
+        across_q2_right_down_down = (
+            arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+            + arm_along_q2_right_down*wrist_y_from_q1_right_down
+        )
+        length_q2_squared_right_down_down = (
+            across_q2_right_down_down*across_q2_right_down_down + along_q2_right_down_down*along_q2_right_down_down
+        )
+        length_q2_right_down_down = select(
+            length_q2_squared_right_down_down > 0.0,
+            root(length_q2_squared_right_down_down),
+            1.0,
+        )
+        cos_q2_right_down_down = along_q2_right_down_down/length_q2_right_down_down  # its reference where it is free
+        sin_q2_right_down_down = across_q2_right_down_down/length_q2_right_down_down
+        cos_q2_right_up_down, sin_q2_right_up_down, cos_q2_right_down_down, sin_q2_right_down_down = elsewhere(
+            reach_right_down > 1e-11*machine_scale,
+            (cos_q2_right_up_down, sin_q2_right_up_down, cos_q2_right_down_down, sin_q2_right_down_down),
+            elsewhere_cos_q2_right_up_down,
+            (ref_a2,),
+        )
         wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
         wrist_x_from_q1_here_left_up = (
             wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
@@ -1130,10 +1088,13 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
             + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2*a2 - a3*a3
         )
-        if everywhere(absolute(value_q6_of_q3_left_up) <= size_q6_of_q3):
-            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-        else:
+
+        def elsewhere_cos_q6_left_up(
+            cos_q6_before_q6_of_q3_left_up: Real, radius_q6_left: Real, sin_q6_before_q6_of_q3_left_up: Real,
+            value_q6_of_q3_left_up: Real, wrist_x_from_q1_across_left: Real, wrist_x_from_q1_along_left: Real,
+            wrist_x_from_q1_fixed_left_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+            wrist_y_from_q1_fixed: Real,
+        ) -> Reals:
             along_q6_of_q3_left_up = (
                 2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
                 + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
@@ -1145,40 +1106,43 @@ class ArrayPrograms(Programs):
             swing_q6_of_q3_left_up = root(
                 across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
             )
+
+            def elsewhere_highest_q6_of_q3_left_up() -> Reals:
+                highest_q6_of_q3_left_up = 1.0  # the arc: cosines from its centre
+                lowest_q6_of_q3_left_up = -1.0
+                return (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up)
+
             level_q6_of_q3_left_up = (
                 value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
                 - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
             )
-            divisor_q6_of_q3_left_up = select(swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3, swing_q6_of_q3_left_up, 1.0)
             # the arc: cosines from its centre
             highest_q6_of_q3_left_up = select(
-                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up,
-                    ),
-                ),
+                (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0,
                 1.0,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0, -1.0,
+                    (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up,
+                ),
+            )
+            lowest_q6_of_q3_left_up = select(
+                (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up > 1.0,
+                1.0,
+                select(
+                    (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up < -1.0,
+                    -1.0,
+                    (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up,
+                ),
+            )
+            highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up = elsewhere(
+                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
+                (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up),
+                elsewhere_highest_q6_of_q3_left_up,
+                (),
             )
             near_q6_of_q3_left_up = atan2(
                 root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
                 highest_q6_of_q3_left_up,
-            )
-            lowest_q6_of_q3_left_up = select(
-                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up,
-                    ),
-                ),
-                -1.0,
             )
             far_q6_of_q3_left_up = atan2(
                 root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
@@ -1213,19 +1177,36 @@ class ArrayPrograms(Programs):
                 )
                 *radius_q6_left
             )
-            stays_q6_of_q3_left_up = select(
-                absolute(value_q6_of_q3_left_up) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left > 1e-11), 1.0, 0.0),
+
+            def elsewhere_cos_q6_left_up(
+                cos_q6_after_q6_of_q3_left_up: Real, sin_q6_after_q6_of_q3_left_up: Real,
+            ) -> Reals:
+                cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
+                sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
+                return (cos_q6_left_up, sin_q6_left_up)
+
+            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+            cos_q6_left_up, sin_q6_left_up = elsewhere(
+                (cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left > 1e-11),
+                (cos_q6_left_up, sin_q6_left_up),
+                elsewhere_cos_q6_left_up,
+                (cos_q6_after_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up),
             )
-            # moved to where the rest can be reached
-            cos_q6_left_up = select(
-                stays_q6_of_q3_left_up > 0.0, cos_q6_before_q6_of_q3_left_up, cos_q6_after_q6_of_q3_left_up,
-            )
-            # moved to where the rest can be reached
-            sin_q6_left_up = select(
-                stays_q6_of_q3_left_up > 0.0, sin_q6_before_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up,
-            )
+            return (cos_q6_left_up, sin_q6_left_up)
+
+        cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+        sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+        cos_q6_left_up, sin_q6_left_up = elsewhere(
+            absolute(value_q6_of_q3_left_up) <= size_q6_of_q3,
+            (cos_q6_left_up, sin_q6_left_up),
+            elsewhere_cos_q6_left_up,
+            (
+                cos_q6_before_q6_of_q3_left_up, radius_q6_left, sin_q6_before_q6_of_q3_left_up,
+                value_q6_of_q3_left_up, wrist_x_from_q1_across_left, wrist_x_from_q1_along_left,
+                wrist_x_from_q1_fixed_left_up, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+            ),
+        )
         r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
         r21_from_q1_before_q56_left_up = r33*radius_q6_left - r21_from_q1_before_q6_left_up*r23_from_q1_left
         # what the unknown links must span
@@ -1242,95 +1223,53 @@ class ArrayPrograms(Programs):
         )
         cos_q3_left_up = (reach_left_up*reach_left_up - a2*a2 - a3*a3)/scale_q3
         sin_q3_left_up_up = root(sine_square_q3_left_up)
-        if everywhere(reach_left_up > 1e-11*machine_scale):
-            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_up = (
-                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
-            )
-            across_q2_left_up_up = (
-                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
-            )
-            length_q2_squared_left_up_up = (
-                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
-            )
-            length_q2_left_up_up = select(length_q2_squared_left_up_up > 0.0, root(length_q2_squared_left_up_up), 1.0)
-            cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
-            sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_up = (
-                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
-            )
-            across_q2_left_down_up = (
-                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
-            )
-            length_q2_squared_left_down_up = (
-                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
-            )
-            length_q2_left_down_up = select(
-                length_q2_squared_left_down_up > 0.0,
-                root(length_q2_squared_left_down_up),
-                1.0,
-            )
-            cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
-            sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
-        else:
+
+        def elsewhere_cos_q2_left_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_up_up = (
-                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
-            )
-            across_q2_left_up_up = (
-                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
-            )
-            length_q2_squared_left_up_up = (
-                across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
-            )
-            length_q2_left_up_up = select(
-                (length_q2_squared_left_up_up > 0.0) & (reach_left_up > 1e-11*machine_scale),
-                root(length_q2_squared_left_up_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_up_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                along_q2_left_up_up/length_q2_left_up_up,
-                cos(free_a2),
-            )
-            sin_q2_left_up_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                across_q2_left_up_up/length_q2_left_up_up,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_left_down_up = (
-                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
-            )
-            across_q2_left_down_up = (
-                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
-            )
-            length_q2_squared_left_down_up = (
-                across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
-            )
-            length_q2_left_down_up = select(
-                (length_q2_squared_left_down_up > 0.0) & (reach_left_up > 1e-11*machine_scale),
-                root(length_q2_squared_left_down_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_left_down_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                along_q2_left_down_up/length_q2_left_down_up,
-                cos(free_a2),
-            )
-            sin_q2_left_down_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                across_q2_left_down_up/length_q2_left_down_up,
-                sin(free_a2),
-            )
+            cos_q2_left_up_up = cos(free_a2)  # its reference where it is free
+            sin_q2_left_up_up = sin(free_a2)
+            cos_q2_left_down_up = cos_q2_left_up_up  # its reference where it is free
+            sin_q2_left_down_up = sin_q2_left_up_up
+            return (cos_q2_left_up_up, sin_q2_left_up_up, cos_q2_left_down_up, sin_q2_left_down_up)
+
+        arm_along_q2_left_up = a2 + a3*cos_q3_left_up
+        arm_across_q2_left_up_up = a3*sin_q3_left_up_up
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_left_up_up = (
+            arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
+        )
+        across_q2_left_up_up = (
+            arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
+        )
+        length_q2_squared_left_up_up = (
+            across_q2_left_up_up*across_q2_left_up_up + along_q2_left_up_up*along_q2_left_up_up
+        )
+        length_q2_left_up_up = select(length_q2_squared_left_up_up > 0.0, root(length_q2_squared_left_up_up), 1.0)
+        cos_q2_left_up_up = along_q2_left_up_up/length_q2_left_up_up  # its reference where it is free
+        sin_q2_left_up_up = across_q2_left_up_up/length_q2_left_up_up
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_left_down_up = (
+            arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
+        )
+        across_q2_left_down_up = (
+            arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
+        )
+        length_q2_squared_left_down_up = (
+            across_q2_left_down_up*across_q2_left_down_up + along_q2_left_down_up*along_q2_left_down_up
+        )
+        length_q2_left_down_up = select(
+            length_q2_squared_left_down_up > 0.0,
+            root(length_q2_squared_left_down_up),
+            1.0,
+        )
+        cos_q2_left_down_up = along_q2_left_down_up/length_q2_left_down_up  # its reference where it is free
+        sin_q2_left_down_up = across_q2_left_down_up/length_q2_left_down_up
+        cos_q2_left_up_up, sin_q2_left_up_up, cos_q2_left_down_up, sin_q2_left_down_up = elsewhere(
+            reach_left_up > 1e-11*machine_scale,
+            (cos_q2_left_up_up, sin_q2_left_up_up, cos_q2_left_down_up, sin_q2_left_down_up),
+            elsewhere_cos_q2_left_up_up,
+            (ref_a2,),
+        )
         wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
         wrist_x_from_q1_here_right_up = (
             wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
@@ -1345,10 +1284,13 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
             + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
         )
-        if everywhere(absolute(value_q6_of_q3_right_up) <= size_q6_of_q3):
-            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-        else:
+
+        def elsewhere_cos_q6_right_up(
+            cos_q6_before_q6_of_q3_right_up: Real, radius_q6_right: Real, sin_q6_before_q6_of_q3_right_up: Real,
+            value_q6_of_q3_right_up: Real, wrist_x_from_q1_across_right: Real, wrist_x_from_q1_along_right: Real,
+            wrist_x_from_q1_fixed_right_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+            wrist_y_from_q1_fixed: Real,
+        ) -> Reals:
             along_q6_of_q3_right_up = (
                 2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
                 + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
@@ -1360,42 +1302,43 @@ class ArrayPrograms(Programs):
             swing_q6_of_q3_right_up = root(
                 across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
             )
+
+            def elsewhere_highest_q6_of_q3_right_up() -> Reals:
+                highest_q6_of_q3_right_up = 1.0  # the arc: cosines from its centre
+                lowest_q6_of_q3_right_up = -1.0
+                return (highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up)
+
             level_q6_of_q3_right_up = (
                 value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
                 - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
             )
-            divisor_q6_of_q3_right_up = select(
-                swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3, swing_q6_of_q3_right_up, 1.0,
-            )
             # the arc: cosines from its centre
             highest_q6_of_q3_right_up = select(
-                swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3_right_up)/divisor_q6_of_q3_right_up > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3_right_up)/divisor_q6_of_q3_right_up < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_right_up)/divisor_q6_of_q3_right_up,
-                    ),
-                ),
+                (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0,
                 1.0,
+                select(
+                    (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0, -1.0,
+                    (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up,
+                ),
+            )
+            lowest_q6_of_q3_right_up = select(
+                (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up > 1.0,
+                1.0,
+                select(
+                    (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up < -1.0,
+                    -1.0,
+                    (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up,
+                ),
+            )
+            highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up = elsewhere(
+                swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3,
+                (highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up),
+                elsewhere_highest_q6_of_q3_right_up,
+                (),
             )
             near_q6_of_q3_right_up = atan2(
                 root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)),
                 highest_q6_of_q3_right_up,
-            )
-            lowest_q6_of_q3_right_up = select(
-                swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3_right_up - size_q6_of_q3)/divisor_q6_of_q3_right_up > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3_right_up - size_q6_of_q3)/divisor_q6_of_q3_right_up < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_right_up - size_q6_of_q3)/divisor_q6_of_q3_right_up,
-                    ),
-                ),
-                -1.0,
             )
             far_q6_of_q3_right_up = atan2(
                 root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)),
@@ -1430,19 +1373,36 @@ class ArrayPrograms(Programs):
                 )
                 *radius_q6_right
             )
-            stays_q6_of_q3_right_up = select(
-                absolute(value_q6_of_q3_right_up) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right > 1e-11), 1.0, 0.0),
+
+            def elsewhere_cos_q6_right_up(
+                cos_q6_after_q6_of_q3_right_up: Real, sin_q6_after_q6_of_q3_right_up: Real,
+            ) -> Reals:
+                cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
+                sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
+                return (cos_q6_right_up, sin_q6_right_up)
+
+            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            cos_q6_right_up, sin_q6_right_up = elsewhere(
+                (cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right > 1e-11),
+                (cos_q6_right_up, sin_q6_right_up),
+                elsewhere_cos_q6_right_up,
+                (cos_q6_after_q6_of_q3_right_up, sin_q6_after_q6_of_q3_right_up),
             )
-            # moved to where the rest can be reached
-            cos_q6_right_up = select(
-                stays_q6_of_q3_right_up > 0.0, cos_q6_before_q6_of_q3_right_up, cos_q6_after_q6_of_q3_right_up,
-            )
-            # moved to where the rest can be reached
-            sin_q6_right_up = select(
-                stays_q6_of_q3_right_up > 0.0, sin_q6_before_q6_of_q3_right_up, sin_q6_after_q6_of_q3_right_up,
-            )
+            return (cos_q6_right_up, sin_q6_right_up)
+
+        cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+        sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+        cos_q6_right_up, sin_q6_right_up = elsewhere(
+            absolute(value_q6_of_q3_right_up) <= size_q6_of_q3,
+            (cos_q6_right_up, sin_q6_right_up),
+            elsewhere_cos_q6_right_up,
+            (
+                cos_q6_before_q6_of_q3_right_up, radius_q6_right, sin_q6_before_q6_of_q3_right_up,
+                value_q6_of_q3_right_up, wrist_x_from_q1_across_right, wrist_x_from_q1_along_right,
+                wrist_x_from_q1_fixed_right_up, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+            ),
+        )
         r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
         r21_from_q1_before_q56_right_up = r33*radius_q6_right - r21_from_q1_before_q6_right_up*r23_from_q1_right
         # what the unknown links must span
@@ -1460,95 +1420,53 @@ class ArrayPrograms(Programs):
         )
         cos_q3_right_up = (reach_right_up*reach_right_up - a2*a2 - a3*a3)/scale_q3
         sin_q3_right_up_up = root(sine_square_q3_right_up)
-        if everywhere(reach_right_up > 1e-11*machine_scale):
-            arm_along_q2_right_up = a2 + a3*cos_q3_right_up
-            arm_across_q2_right_up_up = a3*sin_q3_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_up = (
-                arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
-            )
-            across_q2_right_up_up = (
-                arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
-            )
-            length_q2_squared_right_up_up = (
-                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
-            )
-            length_q2_right_up_up = select(length_q2_squared_right_up_up > 0.0, root(length_q2_squared_right_up_up), 1.0)
-            cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
-            sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_up = (
-                arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
-            )
-            across_q2_right_down_up = (
-                arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
-            )
-            length_q2_squared_right_down_up = (
-                across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
-            )
-            length_q2_right_down_up = select(
-                length_q2_squared_right_down_up > 0.0,
-                root(length_q2_squared_right_down_up),
-                1.0,
-            )
-            cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
-            sin_q2_right_down_up = across_q2_right_down_up/length_q2_right_down_up
-        else:
+
+        def elsewhere_cos_q2_right_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_right_up = a2 + a3*cos_q3_right_up
-            arm_across_q2_right_up_up = a3*sin_q3_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_up_up = (
-                arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
-            )
-            across_q2_right_up_up = (
-                arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
-            )
-            length_q2_squared_right_up_up = (
-                across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
-            )
-            length_q2_right_up_up = select(
-                (length_q2_squared_right_up_up > 0.0) & (reach_right_up > 1e-11*machine_scale),
-                root(length_q2_squared_right_up_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_right_up_up = select(
-                reach_right_up > 1e-11*machine_scale,
-                along_q2_right_up_up/length_q2_right_up_up,
-                cos(free_a2),
-            )
-            sin_q2_right_up_up = select(
-                reach_right_up > 1e-11*machine_scale,
-                across_q2_right_up_up/length_q2_right_up_up,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_right_down_up = (
-                arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
-            )
-            across_q2_right_down_up = (
-                arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
-            )
-            length_q2_squared_right_down_up = (
-                across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
-            )
-            length_q2_right_down_up = select(
-                (length_q2_squared_right_down_up > 0.0) & (reach_right_up > 1e-11*machine_scale),
-                root(length_q2_squared_right_down_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_right_down_up = select(
-                reach_right_up > 1e-11*machine_scale,
-                along_q2_right_down_up/length_q2_right_down_up,
-                cos(free_a2),
-            )
-            sin_q2_right_down_up = select(
-                reach_right_up > 1e-11*machine_scale,
-                across_q2_right_down_up/length_q2_right_down_up,
-                sin(free_a2),
-            )
+            cos_q2_right_up_up = cos(free_a2)  # its reference where it is free
+            sin_q2_right_up_up = sin(free_a2)
+            cos_q2_right_down_up = cos_q2_right_up_up  # its reference where it is free
+            sin_q2_right_down_up = sin_q2_right_up_up
+            return (cos_q2_right_up_up, sin_q2_right_up_up, cos_q2_right_down_up, sin_q2_right_down_up)
+
+        arm_along_q2_right_up = a2 + a3*cos_q3_right_up
+        arm_across_q2_right_up_up = a3*sin_q3_right_up_up
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_right_up_up = (
+            arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
+        )
+        across_q2_right_up_up = (
+            arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
+        )
+        length_q2_squared_right_up_up = (
+            across_q2_right_up_up*across_q2_right_up_up + along_q2_right_up_up*along_q2_right_up_up
+        )
+        length_q2_right_up_up = select(length_q2_squared_right_up_up > 0.0, root(length_q2_squared_right_up_up), 1.0)
+        cos_q2_right_up_up = along_q2_right_up_up/length_q2_right_up_up  # its reference where it is free
+        sin_q2_right_up_up = across_q2_right_up_up/length_q2_right_up_up
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_right_down_up = (
+            arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
+        )
+        across_q2_right_down_up = (
+            arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
+        )
+        length_q2_squared_right_down_up = (
+            across_q2_right_down_up*across_q2_right_down_up + along_q2_right_down_up*along_q2_right_down_up
+        )
+        length_q2_right_down_up = select(
+            length_q2_squared_right_down_up > 0.0,
+            root(length_q2_squared_right_down_up),
+            1.0,
+        )
+        cos_q2_right_down_up = along_q2_right_down_up/length_q2_right_down_up  # its reference where it is free
+        sin_q2_right_down_up = across_q2_right_down_up/length_q2_right_down_up
+        cos_q2_right_up_up, sin_q2_right_up_up, cos_q2_right_down_up, sin_q2_right_down_up = elsewhere(
+            reach_right_up > 1e-11*machine_scale,
+            (cos_q2_right_up_up, sin_q2_right_up_up, cos_q2_right_down_up, sin_q2_right_down_up),
+            elsewhere_cos_q2_right_up_up,
+            (ref_a2,),
+        )
         refusal_left_down = select(sine_square_q3_left_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(

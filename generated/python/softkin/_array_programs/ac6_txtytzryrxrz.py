@@ -10,13 +10,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -156,18 +157,18 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         radius_a4 = root(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        if everywhere(radius_a4 > 1e-11):
-            along_a4 = r33*sigma_wrist  # a4: polar angle in the r33 and r13 equations
-            cos_a4 = along_a4/radius_a4  # its reference where it is free
-            across_a4 = r13*sigma_wrist
-            sin_a4 = across_a4/radius_a4
-        else:
+
+        def elsewhere_cos_a4(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            along_a4 = r33*sigma_wrist  # a4: polar angle in the r33 and r13 equations
-            length_a4 = select(radius_a4 > 1e-11, radius_a4, 1.0)
-            cos_a4 = select(radius_a4 > 1e-11, along_a4/length_a4, cos(free_a4))  # its reference where it is free
-            across_a4 = r13*sigma_wrist
-            sin_a4 = select(radius_a4 > 1e-11, across_a4/length_a4, sin(free_a4))
+            cos_a4 = cos(free_a4)  # its reference where it is free
+            sin_a4 = sin(free_a4)
+            return (cos_a4, sin_a4)
+
+        along_a4 = r33*sigma_wrist  # a4: polar angle in the r33 and r13 equations
+        cos_a4 = along_a4/radius_a4  # its reference where it is free
+        across_a4 = r13*sigma_wrist
+        sin_a4 = across_a4/radius_a4
+        cos_a4, sin_a4 = elsewhere(radius_a4 > 1e-11, (cos_a4, sin_a4), elsewhere_cos_a4, (ref_a4,))
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
@@ -292,18 +293,25 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         radius_a4 = root(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        if everywhere(radius_a4 > 1e-11):
-            cos_a4_upright = r33/radius_a4  # its reference where it is free
-            sin_a4_upright = r13/radius_a4
-            cos_a4_flipped = -cos_a4_upright  # its reference where it is free
-            sin_a4_flipped = -sin_a4_upright
-        else:
+
+        def elsewhere_cos_a4_upright(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            length_a4 = select(radius_a4 > 1e-11, radius_a4, 1.0)
-            cos_a4_upright = select(radius_a4 > 1e-11, r33/length_a4, cos(free_a4))  # its reference where it is free
-            sin_a4_upright = select(radius_a4 > 1e-11, r13/length_a4, sin(free_a4))
-            cos_a4_flipped = select(radius_a4 > 1e-11, -r33/length_a4, cos(free_a4))  # its reference where it is free
-            sin_a4_flipped = select(radius_a4 > 1e-11, -r13/length_a4, sin(free_a4))
+            cos_a4_upright = cos(free_a4)  # its reference where it is free
+            sin_a4_upright = sin(free_a4)
+            cos_a4_flipped = cos_a4_upright  # its reference where it is free
+            sin_a4_flipped = sin_a4_upright
+            return (cos_a4_upright, sin_a4_upright, cos_a4_flipped, sin_a4_flipped)
+
+        cos_a4_upright = r33/radius_a4  # its reference where it is free
+        sin_a4_upright = r13/radius_a4
+        cos_a4_flipped = -cos_a4_upright  # its reference where it is free
+        sin_a4_flipped = -sin_a4_upright
+        cos_a4_upright, sin_a4_upright, cos_a4_flipped, sin_a4_flipped = elsewhere(
+            radius_a4 > 1e-11,
+            (cos_a4_upright, sin_a4_upright, cos_a4_flipped, sin_a4_flipped),
+            elsewhere_cos_a4_upright,
+            (ref_a4,),
+        )
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23

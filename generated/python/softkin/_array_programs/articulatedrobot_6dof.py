@@ -10,13 +10,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -225,26 +226,18 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = root(sine_square_q1)*sigma_arm
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
-            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = root(sine_square_q1)*sigma_arm
-            # its reference where it is free
-            cos_q1 = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1 = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1,
-                sin(free_a1),
-            )
+            cos_q1 = cos(free_a1)  # its reference where it is free
+            sin_q1 = sin(free_a1)
+            return (cos_q1, sin_q1)
+
+        cos_swing_q1 = -d3/divisor_q1
+        sin_swing_q1 = root(sine_square_q1)*sigma_arm
+        cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+        sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+        cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
@@ -260,34 +253,26 @@ class ArrayPrograms(Programs):
         sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
         cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
         sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                across_q2*across_q2 + along_q2*along_q2 > 0.0,
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
-        else:
+
+        def elsewhere_cos_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
-            sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
+            cos_q2 = cos(free_a2)  # its reference where it is free
+            sin_q2 = sin(free_a2)
+            return (cos_q2, sin_q2)
+
+        arm_along_q2 = d4*cos_q3 - a3*sin_q3
+        arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        length_q2 = select(
+            across_q2*across_q2 + along_q2*along_q2 > 0.0,
+            root(across_q2*across_q2 + along_q2*along_q2),
+            1.0,
+        )
+        cos_q2 = along_q2/length_q2  # its reference where it is free
+        sin_q2 = across_q2/length_q2
+        cos_q2, sin_q2 = elsewhere(reach > 1e-11*machine_scale, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,))
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
         sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
         cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
@@ -295,18 +280,18 @@ class ArrayPrograms(Programs):
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         # q4: direction and distance of a point
         radius_q4 = root(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
-        if everywhere(radius_q4 > 1e-11):
-            along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
-            cos_q4 = along_q4/radius_q4  # its reference where it is free
-            across_q4 = r23_from_q1*sigma_hand
-            sin_q4 = across_q4/radius_q4
-        else:
+
+        def elsewhere_cos_q4(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
-            length_q4 = select(radius_q4 > 1e-11, radius_q4, 1.0)
-            cos_q4 = select(radius_q4 > 1e-11, along_q4/length_q4, cos(free_a4))  # its reference where it is free
-            across_q4 = r23_from_q1*sigma_hand
-            sin_q4 = select(radius_q4 > 1e-11, across_q4/length_q4, sin(free_a4))
+            cos_q4 = cos(free_a4)  # its reference where it is free
+            sin_q4 = sin(free_a4)
+            return (cos_q4, sin_q4)
+
+        along_q4 = -r13_from_q123*sigma_hand  # q4: polar angle in the r13 and r23 equations
+        cos_q4 = along_q4/radius_q4  # its reference where it is free
+        across_q4 = r23_from_q1*sigma_hand
+        sin_q4 = across_q4/radius_q4
+        cos_q4, sin_q4 = elsewhere(radius_q4 > 1e-11, (cos_q4, sin_q4), elsewhere_cos_q4, (ref_a4,))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -475,40 +460,28 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = root(sine_square_q1)
-            # its reference where it is free
-            cos_q1_front = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1
-            sin_q1_front = (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1
-            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1_front(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = root(sine_square_q1)
-            # its reference where it is free
-            cos_q1_front = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_front = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1,
-                sin(free_a1),
-            )
-            # its reference where it is free
-            cos_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1,
-                sin(free_a1),
-            )
+            cos_q1_front = cos(free_a1)  # its reference where it is free
+            sin_q1_front = sin(free_a1)
+            cos_q1_back = cos_q1_front  # its reference where it is free
+            sin_q1_back = sin_q1_front
+            return (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back)
+
+        cos_swing_q1 = -d3/divisor_q1
+        sin_swing_q1_front = root(sine_square_q1)
+        # its reference where it is free
+        cos_q1_front = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1
+        sin_q1_front = (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1
+        cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+        sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
+        cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back = elsewhere(
+            distance_q1 > 1e-11*machine_scale,
+            (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back),
+            elsewhere_cos_q1_front,
+            (ref_a1,),
+        )
         wrist_x_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
@@ -524,79 +497,43 @@ class ArrayPrograms(Programs):
         sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3 + d4*cos_swing_q3_front/effective_q3
         cos_q3_front_up = a3*cos_swing_q3_front/effective_q3 + d4*sin_swing_q3_front_down/effective_q3
         sin_q3_front_up = d4*cos_swing_q3_front/effective_q3 - a3*sin_swing_q3_front_down/effective_q3
-        if everywhere(reach_front > 1e-11*machine_scale):
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = select(length_q2_squared_front_down > 0.0, root(length_q2_squared_front_down), 1.0)
-            cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
-            sin_q2_front_down = across_q2_front_down/length_q2_front_down
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = select(length_q2_squared_front_up > 0.0, root(length_q2_squared_front_up), 1.0)
-            cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
-            sin_q2_front_up = across_q2_front_up/length_q2_front_up
-        else:
+
+        def elsewhere_cos_q2_front_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = select(
-                (length_q2_squared_front_down > 0.0) & (reach_front > 1e-11*machine_scale),
-                root(length_q2_squared_front_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_front_down = select(
-                reach_front > 1e-11*machine_scale,
-                along_q2_front_down/length_q2_front_down,
-                cos(free_a2),
-            )
-            sin_q2_front_down = select(
-                reach_front > 1e-11*machine_scale,
-                across_q2_front_down/length_q2_front_down,
-                sin(free_a2),
-            )
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = select(
-                (length_q2_squared_front_up > 0.0) & (reach_front > 1e-11*machine_scale),
-                root(length_q2_squared_front_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_front_up = select(
-                reach_front > 1e-11*machine_scale,
-                along_q2_front_up/length_q2_front_up,
-                cos(free_a2),
-            )
-            sin_q2_front_up = select(
-                reach_front > 1e-11*machine_scale,
-                across_q2_front_up/length_q2_front_up,
-                sin(free_a2),
-            )
+            cos_q2_front_down = cos(free_a2)  # its reference where it is free
+            sin_q2_front_down = sin(free_a2)
+            cos_q2_front_up = cos_q2_front_down  # its reference where it is free
+            sin_q2_front_up = sin_q2_front_down
+            return (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up)
+
+        arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
+        arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+        across_q2_front_down = (
+            arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
+        )
+        length_q2_squared_front_down = (
+            across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
+        )
+        length_q2_front_down = select(length_q2_squared_front_down > 0.0, root(length_q2_squared_front_down), 1.0)
+        cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
+        sin_q2_front_down = across_q2_front_down/length_q2_front_down
+        arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
+        arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
+        across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
+        length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
+        length_q2_front_up = select(length_q2_squared_front_up > 0.0, root(length_q2_squared_front_up), 1.0)
+        cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
+        sin_q2_front_up = across_q2_front_up/length_q2_front_up
+        cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up = elsewhere(
+            reach_front > 1e-11*machine_scale,
+            (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up),
+            elsewhere_cos_q2_front_down,
+            (ref_a2,),
+        )
         r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
         sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
         cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
@@ -606,36 +543,25 @@ class ArrayPrograms(Programs):
         radius_q4_front_down = root(
             r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
         )
-        if everywhere(radius_q4_front_down > 1e-11):
-            cos_q4_front_down_down = -r13_from_q123_front_down/radius_q4_front_down  # its reference where it is free
-            sin_q4_front_down_down = r23_from_q1_front/radius_q4_front_down
-            cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
-            sin_q4_front_down_up = -sin_q4_front_down_down
-        else:
+
+        def elsewhere_cos_q4_front_down_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            length_q4_front_down = select(radius_q4_front_down > 1e-11, radius_q4_front_down, 1.0)
-            # its reference where it is free
-            cos_q4_front_down_down = select(
-                radius_q4_front_down > 1e-11,
-                -r13_from_q123_front_down/length_q4_front_down,
-                cos(free_a4),
-            )
-            sin_q4_front_down_down = select(
-                radius_q4_front_down > 1e-11,
-                r23_from_q1_front/length_q4_front_down,
-                sin(free_a4),
-            )
-            # its reference where it is free
-            cos_q4_front_down_up = select(
-                radius_q4_front_down > 1e-11,
-                r13_from_q123_front_down/length_q4_front_down,
-                cos(free_a4),
-            )
-            sin_q4_front_down_up = select(
-                radius_q4_front_down > 1e-11,
-                -r23_from_q1_front/length_q4_front_down,
-                sin(free_a4),
-            )
+            cos_q4_front_down_down = cos(free_a4)  # its reference where it is free
+            sin_q4_front_down_down = sin(free_a4)
+            cos_q4_front_down_up = cos_q4_front_down_down  # its reference where it is free
+            sin_q4_front_down_up = sin_q4_front_down_down
+            return (cos_q4_front_down_down, sin_q4_front_down_down, cos_q4_front_down_up, sin_q4_front_down_up)
+
+        cos_q4_front_down_down = -r13_from_q123_front_down/radius_q4_front_down  # its reference where it is free
+        sin_q4_front_down_down = r23_from_q1_front/radius_q4_front_down
+        cos_q4_front_down_up = -cos_q4_front_down_down  # its reference where it is free
+        sin_q4_front_down_up = -sin_q4_front_down_down
+        cos_q4_front_down_down, sin_q4_front_down_down, cos_q4_front_down_up, sin_q4_front_down_up = elsewhere(
+            radius_q4_front_down > 1e-11,
+            (cos_q4_front_down_down, sin_q4_front_down_down, cos_q4_front_down_up, sin_q4_front_down_up),
+            elsewhere_cos_q4_front_down_down,
+            (ref_a4,),
+        )
         wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
         reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -649,63 +575,39 @@ class ArrayPrograms(Programs):
         sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3 + d4*cos_swing_q3_back/effective_q3
         cos_q3_back_up = a3*cos_swing_q3_back/effective_q3 + d4*sin_swing_q3_back_down/effective_q3
         sin_q3_back_up = d4*cos_swing_q3_back/effective_q3 - a3*sin_swing_q3_back_down/effective_q3
-        if everywhere(reach_back > 1e-11*machine_scale):
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = select(length_q2_squared_back_down > 0.0, root(length_q2_squared_back_down), 1.0)
-            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
-            sin_q2_back_down = across_q2_back_down/length_q2_back_down
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = select(length_q2_squared_back_up > 0.0, root(length_q2_squared_back_up), 1.0)
-            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
-            sin_q2_back_up = across_q2_back_up/length_q2_back_up
-        else:
+
+        def elsewhere_cos_q2_back_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = select(
-                (length_q2_squared_back_down > 0.0) & (reach_back > 1e-11*machine_scale),
-                root(length_q2_squared_back_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_back_down = select(
-                reach_back > 1e-11*machine_scale,
-                along_q2_back_down/length_q2_back_down,
-                cos(free_a2),
-            )
-            sin_q2_back_down = select(
-                reach_back > 1e-11*machine_scale,
-                across_q2_back_down/length_q2_back_down,
-                sin(free_a2),
-            )
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = select(
-                (length_q2_squared_back_up > 0.0) & (reach_back > 1e-11*machine_scale),
-                root(length_q2_squared_back_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_back_up = select(reach_back > 1e-11*machine_scale, along_q2_back_up/length_q2_back_up, cos(free_a2))
-            sin_q2_back_up = select(reach_back > 1e-11*machine_scale, across_q2_back_up/length_q2_back_up, sin(free_a2))
+            cos_q2_back_down = cos(free_a2)  # its reference where it is free
+            sin_q2_back_down = sin(free_a2)
+            cos_q2_back_up = cos_q2_back_down  # its reference where it is free
+            sin_q2_back_up = sin_q2_back_down
+            return (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up)
+
+        arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
+        arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+        across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
+        length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
+        length_q2_back_down = select(length_q2_squared_back_down > 0.0, root(length_q2_squared_back_down), 1.0)
+        cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
+        sin_q2_back_down = across_q2_back_down/length_q2_back_down
+        arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
+        arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
+        across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
+        length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
+        length_q2_back_up = select(length_q2_squared_back_up > 0.0, root(length_q2_squared_back_up), 1.0)
+        cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
+        sin_q2_back_up = across_q2_back_up/length_q2_back_up
+        cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up = elsewhere(
+            reach_back > 1e-11*machine_scale,
+            (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up),
+            elsewhere_cos_q2_back_down,
+            (ref_a2,),
+        )
         r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
         sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
         cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
@@ -715,82 +617,73 @@ class ArrayPrograms(Programs):
         radius_q4_back_down = root(
             r13_from_q123_back_down*r13_from_q123_back_down + r23_from_q1_back*r23_from_q1_back
         )
-        if everywhere(radius_q4_back_down > 1e-11):
-            cos_q4_back_down_down = -r13_from_q123_back_down/radius_q4_back_down  # its reference where it is free
-            sin_q4_back_down_down = r23_from_q1_back/radius_q4_back_down
-            cos_q4_back_down_up = -cos_q4_back_down_down  # its reference where it is free
-            sin_q4_back_down_up = -sin_q4_back_down_down
-        else:
+
+        def elsewhere_cos_q4_back_down_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            length_q4_back_down = select(radius_q4_back_down > 1e-11, radius_q4_back_down, 1.0)
-            # its reference where it is free
-            cos_q4_back_down_down = select(
-                radius_q4_back_down > 1e-11,
-                -r13_from_q123_back_down/length_q4_back_down,
-                cos(free_a4),
-            )
-            sin_q4_back_down_down = select(
-                radius_q4_back_down > 1e-11,
-                r23_from_q1_back/length_q4_back_down,
-                sin(free_a4),
-            )
-            # its reference where it is free
-            cos_q4_back_down_up = select(
-                radius_q4_back_down > 1e-11,
-                r13_from_q123_back_down/length_q4_back_down,
-                cos(free_a4),
-            )
-            sin_q4_back_down_up = select(radius_q4_back_down > 1e-11, -r23_from_q1_back/length_q4_back_down, sin(free_a4))
+            cos_q4_back_down_down = cos(free_a4)  # its reference where it is free
+            sin_q4_back_down_down = sin(free_a4)
+            cos_q4_back_down_up = cos_q4_back_down_down  # its reference where it is free
+            sin_q4_back_down_up = sin_q4_back_down_down
+            return (cos_q4_back_down_down, sin_q4_back_down_down, cos_q4_back_down_up, sin_q4_back_down_up)
+
+        cos_q4_back_down_down = -r13_from_q123_back_down/radius_q4_back_down  # its reference where it is free
+        sin_q4_back_down_down = r23_from_q1_back/radius_q4_back_down
+        cos_q4_back_down_up = -cos_q4_back_down_down  # its reference where it is free
+        sin_q4_back_down_up = -sin_q4_back_down_down
+        cos_q4_back_down_down, sin_q4_back_down_down, cos_q4_back_down_up, sin_q4_back_down_up = elsewhere(
+            radius_q4_back_down > 1e-11,
+            (cos_q4_back_down_down, sin_q4_back_down_down, cos_q4_back_down_up, sin_q4_back_down_up),
+            elsewhere_cos_q4_back_down_down,
+            (ref_a4,),
+        )
         sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up
         cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up
         r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up
         # q4: direction and distance of a point
         radius_q4_front_up = root(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
-        if everywhere(radius_q4_front_up > 1e-11):
-            cos_q4_front_up_down = -r13_from_q123_front_up/radius_q4_front_up  # its reference where it is free
-            sin_q4_front_up_down = r23_from_q1_front/radius_q4_front_up
-            cos_q4_front_up_up = -cos_q4_front_up_down  # its reference where it is free
-            sin_q4_front_up_up = -sin_q4_front_up_down
-        else:
+
+        def elsewhere_cos_q4_front_up_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            length_q4_front_up = select(radius_q4_front_up > 1e-11, radius_q4_front_up, 1.0)
-            # its reference where it is free
-            cos_q4_front_up_down = select(
-                radius_q4_front_up > 1e-11,
-                -r13_from_q123_front_up/length_q4_front_up,
-                cos(free_a4),
-            )
-            sin_q4_front_up_down = select(radius_q4_front_up > 1e-11, r23_from_q1_front/length_q4_front_up, sin(free_a4))
-            # its reference where it is free
-            cos_q4_front_up_up = select(
-                radius_q4_front_up > 1e-11,
-                r13_from_q123_front_up/length_q4_front_up,
-                cos(free_a4),
-            )
-            sin_q4_front_up_up = select(radius_q4_front_up > 1e-11, -r23_from_q1_front/length_q4_front_up, sin(free_a4))
+            cos_q4_front_up_down = cos(free_a4)  # its reference where it is free
+            sin_q4_front_up_down = sin(free_a4)
+            cos_q4_front_up_up = cos_q4_front_up_down  # its reference where it is free
+            sin_q4_front_up_up = sin_q4_front_up_down
+            return (cos_q4_front_up_down, sin_q4_front_up_down, cos_q4_front_up_up, sin_q4_front_up_up)
+
+        cos_q4_front_up_down = -r13_from_q123_front_up/radius_q4_front_up  # its reference where it is free
+        sin_q4_front_up_down = r23_from_q1_front/radius_q4_front_up
+        cos_q4_front_up_up = -cos_q4_front_up_down  # its reference where it is free
+        sin_q4_front_up_up = -sin_q4_front_up_down
+        cos_q4_front_up_down, sin_q4_front_up_down, cos_q4_front_up_up, sin_q4_front_up_up = elsewhere(
+            radius_q4_front_up > 1e-11,
+            (cos_q4_front_up_down, sin_q4_front_up_down, cos_q4_front_up_up, sin_q4_front_up_up),
+            elsewhere_cos_q4_front_up_down,
+            (ref_a4,),
+        )
         sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up
         cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up
         r13_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up
         # q4: direction and distance of a point
         radius_q4_back_up = root(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
-        if everywhere(radius_q4_back_up > 1e-11):
-            cos_q4_back_up_down = -r13_from_q123_back_up/radius_q4_back_up  # its reference where it is free
-            sin_q4_back_up_down = r23_from_q1_back/radius_q4_back_up
-            cos_q4_back_up_up = -cos_q4_back_up_down  # its reference where it is free
-            sin_q4_back_up_up = -sin_q4_back_up_down
-        else:
+
+        def elsewhere_cos_q4_back_up_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            length_q4_back_up = select(radius_q4_back_up > 1e-11, radius_q4_back_up, 1.0)
-            # its reference where it is free
-            cos_q4_back_up_down = select(
-                radius_q4_back_up > 1e-11,
-                -r13_from_q123_back_up/length_q4_back_up,
-                cos(free_a4),
-            )
-            sin_q4_back_up_down = select(radius_q4_back_up > 1e-11, r23_from_q1_back/length_q4_back_up, sin(free_a4))
-            # its reference where it is free
-            cos_q4_back_up_up = select(radius_q4_back_up > 1e-11, r13_from_q123_back_up/length_q4_back_up, cos(free_a4))
-            sin_q4_back_up_up = select(radius_q4_back_up > 1e-11, -r23_from_q1_back/length_q4_back_up, sin(free_a4))
+            cos_q4_back_up_down = cos(free_a4)  # its reference where it is free
+            sin_q4_back_up_down = sin(free_a4)
+            cos_q4_back_up_up = cos_q4_back_up_down  # its reference where it is free
+            sin_q4_back_up_up = sin_q4_back_up_down
+            return (cos_q4_back_up_down, sin_q4_back_up_down, cos_q4_back_up_up, sin_q4_back_up_up)
+
+        cos_q4_back_up_down = -r13_from_q123_back_up/radius_q4_back_up  # its reference where it is free
+        sin_q4_back_up_down = r23_from_q1_back/radius_q4_back_up
+        cos_q4_back_up_up = -cos_q4_back_up_down  # its reference where it is free
+        sin_q4_back_up_up = -sin_q4_back_up_down
+        cos_q4_back_up_down, sin_q4_back_up_down, cos_q4_back_up_up, sin_q4_back_up_up = elsewhere(
+            radius_q4_back_up > 1e-11,
+            (cos_q4_back_up_down, sin_q4_back_up_down, cos_q4_back_up_up, sin_q4_back_up_up),
+            elsewhere_cos_q4_back_up_down,
+            (ref_a4,),
+        )
         refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # q3: out of reach
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(

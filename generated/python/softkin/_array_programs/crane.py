@@ -9,13 +9,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_on_arc,
     nearest_period,
     passed,
@@ -90,33 +91,37 @@ class ArrayPrograms(Programs):
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(status, (absolute(ref_phi) <= 1e9) & (absolute(ref_theta) <= 1e9), Status.BAD_INPUT)
         radius_theta = root(x*x + y*y)  # theta: direction and distance of a point
-        if everywhere(radius_theta > 1e-11*machine_scale):
-            cos_theta = x/radius_theta  # its reference where it is free
-            sin_theta = y/radius_theta
-        else:
+
+        def elsewhere_cos_theta(ref_theta: Real) -> Reals:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            length_theta = select(radius_theta > 1e-11*machine_scale, radius_theta, 1.0)
-            # its reference where it is free
-            cos_theta = select(radius_theta > 1e-11*machine_scale, x/length_theta, cos(free_theta))
-            sin_theta = select(radius_theta > 1e-11*machine_scale, y/length_theta, sin(free_theta))
+            cos_theta = cos(free_theta)  # its reference where it is free
+            sin_theta = sin(free_theta)
+            return (cos_theta, sin_theta)
+
+        cos_theta = x/radius_theta  # its reference where it is free
+        sin_theta = y/radius_theta
+        cos_theta, sin_theta = elsewhere(
+            radius_theta > 1e-11*machine_scale,
+            (cos_theta, sin_theta),
+            elsewhere_cos_theta,
+            (ref_theta,),
+        )
         radius_phi = root(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        if everywhere(radius_phi > 1e-11*machine_scale):
-            cos_phi = z/radius_phi  # its reference where it is free
-            sin_phi = radius_theta/radius_phi
-        else:
+
+        def elsewhere_cos_phi(ref_phi: Real) -> Reals:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            length_phi = select(radius_phi > 1e-11*machine_scale, radius_phi, 1.0)
-            # its reference where it is free
-            cos_phi = select(
-                radius_phi > 1e-11*machine_scale,
-                z/length_phi,
-                cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)),
-            )
-            sin_phi = select(
-                radius_phi > 1e-11*machine_scale,
-                radius_theta/length_phi,
-                sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)),
-            )
+            cos_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            sin_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            return (cos_phi, sin_phi)
+
+        cos_phi = z/radius_phi  # its reference where it is free
+        sin_phi = radius_theta/radius_phi
+        cos_phi, sin_phi = elsewhere(
+            radius_phi > 1e-11*machine_scale,
+            (cos_phi, sin_phi),
+            elsewhere_cos_phi,
+            (ref_phi,),
+        )
         axis_r = offset_r + radius_phi
         open_theta = select(single_theta > 0.0, mid_theta, ref_theta)  # Theta: where its turn is open
         near_theta = select(

@@ -16,7 +16,7 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -500,230 +500,124 @@ class ArrayPrograms(Programs):
         sin_a2_left_right = (
             across_a2_left*cos_swing_a2_left/divisor_a2_left - along_a2_left*sin_swing_a2_left_left/divisor_a2_left
         )
-        if everywhere((sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5)):
-            pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
-            pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-            # rod rear
-            pivot_rear_x_left_left = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_left
+
+        def elsewhere_refusal_left_left() -> Reals:
+            refusal_left_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_left_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            return (refusal_left_left, refusal_left_right)
+
+        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
+        pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
+        # rod rear
+        pivot_rear_x_left_left = (
+            link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
+            - link_length_5*cos_a2_left_left
+        )
+        # rod rear
+        pivot_rear_y_left_left = (
+            link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
+            + link_length_1*link_length_3*cos_a1_left/link_length_2
+        )
+        centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
+        rod_1_x_left = x - centre_1_x_left
+        centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
+        rod_1_y_left = y - centre_1_y_left
+        centre_2_x_left_left = (
+            (
+                link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
+                - link_length_2*pivot_rear_y_left_left*swap_xy
             )
-            # rod rear
-            pivot_rear_y_left_left = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
+            /link_length_3
+        )
+        rod_2_x_left_left = x - centre_2_x_left_left
+        centre_2_y_left_left = (
+            (
+                link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
+                - link_length_2*pivot_rear_x_left_left*swap_xy
             )
-            centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
-            rod_1_x_left = x - centre_1_x_left
-            centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
-            rod_1_y_left = y - centre_1_y_left
-            centre_2_x_left_left = (
-                (
-                    link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
-                    - link_length_2*pivot_rear_y_left_left*swap_xy
+            /link_length_3
+        )
+        rod_2_y_left_left = y - centre_2_y_left_left
+        type2_arms_aligned_left_left = (
+            assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
+            /(
+                root(
+                    link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
+                    + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
+                    + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
+                    - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
+                    - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
+                    - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
                 )
-                /link_length_3
-            )
-            rod_2_x_left_left = x - centre_2_x_left_left
-            centre_2_y_left_left = (
-                (
-                    link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
-                    - link_length_2*pivot_rear_x_left_left*swap_xy
+                *root(
+                    link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
+                    + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
+                    + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
+                    - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
+                    - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
+                    - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
                 )
-                /link_length_3
+                *link_length_2
             )
-            rod_2_y_left_left = y - centre_2_y_left_left
-            type2_arms_aligned_left_left = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
-                        + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
-                        - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
-                        - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                    )
-                    *link_length_2
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0)
+        # rod rear
+        pivot_rear_x_left_right = (
+            link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
+            - link_length_5*cos_a2_left_right
+        )
+        # rod rear
+        pivot_rear_y_left_right = (
+            link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
+            + link_length_1*link_length_3*cos_a1_left/link_length_2
+        )
+        centre_2_x_left_right = (
+            (
+                link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
+                - link_length_2*pivot_rear_y_left_right*swap_xy
+            )
+            /link_length_3
+        )
+        rod_2_x_left_right = x - centre_2_x_left_right
+        centre_2_y_left_right = (
+            (
+                link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
+                - link_length_2*pivot_rear_x_left_right*swap_xy
+            )
+            /link_length_3
+        )
+        rod_2_y_left_right = y - centre_2_y_left_right
+        type2_arms_aligned_left_right = (
+            assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
+            /(
+                root(
+                    link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
+                    + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
+                    + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
+                    - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
+                    - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
+                    - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
                 )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0)
-            # rod rear
-            pivot_rear_x_left_right = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_right
-            )
-            # rod rear
-            pivot_rear_y_left_right = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
-            )
-            centre_2_x_left_right = (
-                (
-                    link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
-                    - link_length_2*pivot_rear_y_left_right*swap_xy
+                *root(
+                    link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
+                    + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
+                    + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
+                    - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
+                    - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
+                    - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
                 )
-                /link_length_3
+                *link_length_2
             )
-            rod_2_x_left_right = x - centre_2_x_left_right
-            centre_2_y_left_right = (
-                (
-                    link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
-                    - link_length_2*pivot_rear_x_left_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_left_right = y - centre_2_y_left_right
-            type2_arms_aligned_left_right = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
-                        + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
-                        - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
-                        - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0)
-        else:
-            pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
-            pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-            # rod rear
-            pivot_rear_x_left_left = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_left
-            )
-            # rod rear
-            pivot_rear_y_left_left = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
-            )
-            centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
-            rod_1_x_left = x - centre_1_x_left
-            centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
-            rod_1_y_left = y - centre_1_y_left
-            centre_2_x_left_left = (
-                (
-                    link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
-                    - link_length_2*pivot_rear_y_left_left*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_x_left_left = x - centre_2_x_left_left
-            centre_2_y_left_left = (
-                (
-                    link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
-                    - link_length_2*pivot_rear_x_left_left*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_left_left = y - centre_2_y_left_left
-            type2_arms_aligned_left_left = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
-                        + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
-                        - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
-                        - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # a2: its effective length is too short, a2: out of reach
-            refusal_left = select((sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5), 0.0, 3.0)
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_left = select(
-                refusal_left > 0.0,
-                refusal_left,
-                select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0),
-            )
-            # rod rear
-            pivot_rear_x_left_right = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_right
-            )
-            # rod rear
-            pivot_rear_y_left_right = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
-            )
-            centre_2_x_left_right = (
-                (
-                    link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
-                    - link_length_2*pivot_rear_y_left_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_x_left_right = x - centre_2_x_left_right
-            centre_2_y_left_right = (
-                (
-                    link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
-                    - link_length_2*pivot_rear_x_left_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_left_right = y - centre_2_y_left_right
-            type2_arms_aligned_left_right = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
-                        + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
-                        - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
-                        - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_right = select(
-                refusal_left > 0.0,
-                refusal_left,
-                select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0),
-            )
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0)
+        refusal_left_left, refusal_left_right = elsewhere(
+            (sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5),
+            (refusal_left_left, refusal_left_right),
+            elsewhere_refusal_left_left,
+            (),
+        )
         sin_a1_right = span_upper_x*cos_swing_a1/divisor_a1 - span_upper_y*sin_swing_a1_left/divisor_a1
         cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_left/divisor_a1
         along_a2_right = (
@@ -805,230 +699,124 @@ class ArrayPrograms(Programs):
             across_a2_right*cos_swing_a2_right/divisor_a2_right
             - along_a2_right*sin_swing_a2_right_left/divisor_a2_right
         )
-        if everywhere((sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5)):
-            pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-            pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
-            # rod rear
-            pivot_rear_x_right_left = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_left
+
+        def elsewhere_refusal_right_left() -> Reals:
+            refusal_right_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_right_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            return (refusal_right_left, refusal_right_right)
+
+        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+        # rod rear
+        pivot_rear_x_right_left = (
+            link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
+            - link_length_5*cos_a2_right_left
+        )
+        # rod rear
+        pivot_rear_y_right_left = (
+            link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
+            + link_length_1*link_length_3*cos_a1_right/link_length_2
+        )
+        centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
+        rod_1_x_right = x - centre_1_x_right
+        centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
+        rod_1_y_right = y - centre_1_y_right
+        centre_2_x_right_left = (
+            (
+                link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
+                - link_length_2*pivot_rear_y_right_left*swap_xy
             )
-            # rod rear
-            pivot_rear_y_right_left = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
+            /link_length_3
+        )
+        rod_2_x_right_left = x - centre_2_x_right_left
+        centre_2_y_right_left = (
+            (
+                link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
+                - link_length_2*pivot_rear_x_right_left*swap_xy
             )
-            centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
-            rod_1_x_right = x - centre_1_x_right
-            centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
-            rod_1_y_right = y - centre_1_y_right
-            centre_2_x_right_left = (
-                (
-                    link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
-                    - link_length_2*pivot_rear_y_right_left*swap_xy
+            /link_length_3
+        )
+        rod_2_y_right_left = y - centre_2_y_right_left
+        type2_arms_aligned_right_left = (
+            assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
+            /(
+                root(
+                    link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
+                    + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
+                    + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
+                    - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
+                    - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
+                    - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
                 )
-                /link_length_3
-            )
-            rod_2_x_right_left = x - centre_2_x_right_left
-            centre_2_y_right_left = (
-                (
-                    link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
-                    - link_length_2*pivot_rear_x_right_left*swap_xy
+                *root(
+                    link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
+                    + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
+                    + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
+                    - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
+                    - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
+                    - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
                 )
-                /link_length_3
+                *link_length_2
             )
-            rod_2_y_right_left = y - centre_2_y_right_left
-            type2_arms_aligned_right_left = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
-                        + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
-                        - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
-                        - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                    )
-                    *link_length_2
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0)
+        # rod rear
+        pivot_rear_x_right_right = (
+            link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
+            - link_length_5*cos_a2_right_right
+        )
+        # rod rear
+        pivot_rear_y_right_right = (
+            link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
+            + link_length_1*link_length_3*cos_a1_right/link_length_2
+        )
+        centre_2_x_right_right = (
+            (
+                link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
+                - link_length_2*pivot_rear_y_right_right*swap_xy
+            )
+            /link_length_3
+        )
+        rod_2_x_right_right = x - centre_2_x_right_right
+        centre_2_y_right_right = (
+            (
+                link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
+                - link_length_2*pivot_rear_x_right_right*swap_xy
+            )
+            /link_length_3
+        )
+        rod_2_y_right_right = y - centre_2_y_right_right
+        type2_arms_aligned_right_right = (
+            assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
+            /(
+                root(
+                    link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
+                    + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
+                    + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
+                    - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
+                    - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
+                    - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
                 )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0)
-            # rod rear
-            pivot_rear_x_right_right = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_right
-            )
-            # rod rear
-            pivot_rear_y_right_right = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
-            )
-            centre_2_x_right_right = (
-                (
-                    link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
-                    - link_length_2*pivot_rear_y_right_right*swap_xy
+                *root(
+                    link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
+                    + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
+                    + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
+                    - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
+                    - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
+                    - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
                 )
-                /link_length_3
+                *link_length_2
             )
-            rod_2_x_right_right = x - centre_2_x_right_right
-            centre_2_y_right_right = (
-                (
-                    link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
-                    - link_length_2*pivot_rear_x_right_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_right_right = y - centre_2_y_right_right
-            type2_arms_aligned_right_right = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
-                        + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
-                        - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
-                        - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
-        else:
-            pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-            pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
-            # rod rear
-            pivot_rear_x_right_left = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_left
-            )
-            # rod rear
-            pivot_rear_y_right_left = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
-            )
-            centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
-            rod_1_x_right = x - centre_1_x_right
-            centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
-            rod_1_y_right = y - centre_1_y_right
-            centre_2_x_right_left = (
-                (
-                    link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
-                    - link_length_2*pivot_rear_y_right_left*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_x_right_left = x - centre_2_x_right_left
-            centre_2_y_right_left = (
-                (
-                    link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
-                    - link_length_2*pivot_rear_x_right_left*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_right_left = y - centre_2_y_right_left
-            type2_arms_aligned_right_left = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
-                        + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
-                        - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
-                        - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # a2: its effective length is too short, a2: out of reach
-            refusal_right = select((sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5), 0.0, 3.0)
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_left = select(
-                refusal_right > 0.0,
-                refusal_right,
-                select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0),
-            )
-            # rod rear
-            pivot_rear_x_right_right = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_right
-            )
-            # rod rear
-            pivot_rear_y_right_right = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
-            )
-            centre_2_x_right_right = (
-                (
-                    link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
-                    - link_length_2*pivot_rear_y_right_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_x_right_right = x - centre_2_x_right_right
-            centre_2_y_right_right = (
-                (
-                    link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
-                    - link_length_2*pivot_rear_x_right_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_right_right = y - centre_2_y_right_right
-            type2_arms_aligned_right_right = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
-                        + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
-                        - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
-                        - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_right = select(
-                refusal_right > 0.0,
-                refusal_right,
-                select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0),
-            )
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
+        refusal_right_left, refusal_right_right = elsewhere(
+            (sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5),
+            (refusal_right_left, refusal_right_right),
+            elsewhere_refusal_right_left,
+            (),
+        )
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,

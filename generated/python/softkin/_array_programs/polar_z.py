@@ -9,13 +9,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
     require,
@@ -80,14 +81,16 @@ class ArrayPrograms(Programs):
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
         radius_c = root(x*x + y*y)  # c: direction and distance of a point
-        if everywhere(radius_c > 1e-11*machine_scale):
-            cos_c = x/radius_c  # its reference where it is free
-            sin_c = y/radius_c
-        else:
+
+        def elsewhere_cos_c(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
-            length_c = select(radius_c > 1e-11*machine_scale, radius_c, 1.0)
-            cos_c = select(radius_c > 1e-11*machine_scale, x/length_c, cos(free_c))  # its reference where it is free
-            sin_c = select(radius_c > 1e-11*machine_scale, y/length_c, sin(free_c))
+            cos_c = cos(free_c)  # its reference where it is free
+            sin_c = sin(free_c)
+            return (cos_c, sin_c)
+
+        cos_c = x/radius_c  # its reference where it is free
+        sin_c = y/radius_c
+        cos_c, sin_c = elsewhere(radius_c > 1e-11*machine_scale, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
         axis_c = nearest_period(offset_c + atan2(sin_c, cos_c)/DEGREE, near_c)  # C: its turn

@@ -10,13 +10,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -140,18 +141,18 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = root(sine_square_q1)*sigma_arm
-            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
-            sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = root(sine_square_q1)*sigma_arm
-            # its reference where it is free
-            cos_q1 = select(distance_q1 > 1e-11*machine_scale, (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1, cos(free_a1))
-            sin_q1 = select(distance_q1 > 1e-11*machine_scale, (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1, sin(free_a1))
+            cos_q1 = cos(free_a1)  # its reference where it is free
+            sin_q1 = sin(free_a1)
+            return (cos_q1, sin_q1)
+
+        cos_swing_q1 = -d3/divisor_q1
+        sin_swing_q1 = root(sine_square_q1)*sigma_arm
+        cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
+        sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
+        cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -166,34 +167,26 @@ class ArrayPrograms(Programs):
         sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
         cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
         sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                across_q2*across_q2 + along_q2*along_q2 > 0.0,
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
-        else:
+
+        def elsewhere_cos_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2 = d4*cos_q3 - a3*sin_q3
-            arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
-            sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
+            cos_q2 = cos(free_a2)  # its reference where it is free
+            sin_q2 = sin(free_a2)
+            return (cos_q2, sin_q2)
+
+        arm_along_q2 = d4*cos_q3 - a3*sin_q3
+        arm_across_q2 = a2 + a3*cos_q3 + d4*sin_q3
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        length_q2 = select(
+            across_q2*across_q2 + along_q2*along_q2 > 0.0,
+            root(across_q2*across_q2 + along_q2*along_q2),
+            1.0,
+        )
+        cos_q2 = along_q2/length_q2  # its reference where it is free
+        sin_q2 = across_q2/length_q2
+        cos_q2, sin_q2 = elsewhere(reach > 1e-11*machine_scale, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -276,39 +269,27 @@ class ArrayPrograms(Programs):
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = root(sine_square_q1)
-            cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
-            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1_front(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = root(sine_square_q1)
-            # its reference where it is free
-            cos_q1_front = select(
-                distance_q1 > 1e-11*machine_scale,
-                (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_front = select(
-                distance_q1 > 1e-11*machine_scale,
-                (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1,
-                sin(free_a1),
-            )
-            # its reference where it is free
-            cos_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1,
-                sin(free_a1),
-            )
+            cos_q1_front = cos(free_a1)  # its reference where it is free
+            sin_q1_front = sin(free_a1)
+            cos_q1_back = cos_q1_front  # its reference where it is free
+            sin_q1_back = sin_q1_front
+            return (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back)
+
+        cos_swing_q1 = -d3/divisor_q1
+        sin_swing_q1_front = root(sine_square_q1)
+        cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+        sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
+        cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+        sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
+        cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back = elsewhere(
+            distance_q1 > 1e-11*machine_scale,
+            (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back),
+            elsewhere_cos_q1_front,
+            (ref_a1,),
+        )
         wrist_x_from_q1_front = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach_front = root(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
@@ -324,79 +305,43 @@ class ArrayPrograms(Programs):
         sin_q3_front_down = a3*sin_swing_q3_front_down/effective_q3_2 + d4*cos_swing_q3_front/effective_q3_2
         cos_q3_front_up = a3*cos_swing_q3_front/effective_q3_2 + d4*sin_swing_q3_front_down/effective_q3_2
         sin_q3_front_up = d4*cos_swing_q3_front/effective_q3_2 - a3*sin_swing_q3_front_down/effective_q3_2
-        if everywhere(reach_front > 1e-11*machine_scale):
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = select(length_q2_squared_front_down > 0.0, root(length_q2_squared_front_down), 1.0)
-            cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
-            sin_q2_front_down = across_q2_front_down/length_q2_front_down
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = select(length_q2_squared_front_up > 0.0, root(length_q2_squared_front_up), 1.0)
-            cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
-            sin_q2_front_up = across_q2_front_up/length_q2_front_up
-        else:
+
+        def elsewhere_cos_q2_front_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
-            arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
-            )
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = select(
-                (length_q2_squared_front_down > 0.0) & (reach_front > 1e-11*machine_scale),
-                root(length_q2_squared_front_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_front_down = select(
-                reach_front > 1e-11*machine_scale,
-                along_q2_front_down/length_q2_front_down,
-                cos(free_a2),
-            )
-            sin_q2_front_down = select(
-                reach_front > 1e-11*machine_scale,
-                across_q2_front_down/length_q2_front_down,
-                sin(free_a2),
-            )
-            arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
-            arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
-            across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
-            length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
-            length_q2_front_up = select(
-                (length_q2_squared_front_up > 0.0) & (reach_front > 1e-11*machine_scale),
-                root(length_q2_squared_front_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_front_up = select(
-                reach_front > 1e-11*machine_scale,
-                along_q2_front_up/length_q2_front_up,
-                cos(free_a2),
-            )
-            sin_q2_front_up = select(
-                reach_front > 1e-11*machine_scale,
-                across_q2_front_up/length_q2_front_up,
-                sin(free_a2),
-            )
+            cos_q2_front_down = cos(free_a2)  # its reference where it is free
+            sin_q2_front_down = sin(free_a2)
+            cos_q2_front_up = cos_q2_front_down  # its reference where it is free
+            sin_q2_front_up = sin_q2_front_down
+            return (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up)
+
+        arm_along_q2_front_down = d4*cos_q3_front_down - a3*sin_q3_front_down
+        arm_across_q2_front_down = a2 + a3*cos_q3_front_down + d4*sin_q3_front_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_front_down = arm_across_q2_front_down*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+        across_q2_front_down = (
+            arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front_down*wrist_x_from_q1_front
+        )
+        length_q2_squared_front_down = (
+            across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
+        )
+        length_q2_front_down = select(length_q2_squared_front_down > 0.0, root(length_q2_squared_front_down), 1.0)
+        cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
+        sin_q2_front_down = across_q2_front_down/length_q2_front_down
+        arm_along_q2_front_up = d4*cos_q3_front_up - a3*sin_q3_front_up
+        arm_across_q2_front_up = a2 + a3*cos_q3_front_up + d4*sin_q3_front_up
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_front_up = arm_across_q2_front_up*wrist_y_from_q1 + arm_along_q2_front_up*wrist_x_from_q1_front
+        across_q2_front_up = arm_along_q2_front_up*wrist_y_from_q1 - arm_across_q2_front_up*wrist_x_from_q1_front
+        length_q2_squared_front_up = across_q2_front_up*across_q2_front_up + along_q2_front_up*along_q2_front_up
+        length_q2_front_up = select(length_q2_squared_front_up > 0.0, root(length_q2_squared_front_up), 1.0)
+        cos_q2_front_up = along_q2_front_up/length_q2_front_up  # its reference where it is free
+        sin_q2_front_up = across_q2_front_up/length_q2_front_up
+        cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up = elsewhere(
+            reach_front > 1e-11*machine_scale,
+            (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up),
+            elsewhere_cos_q2_front_down,
+            (ref_a2,),
+        )
         wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
         reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -410,63 +355,39 @@ class ArrayPrograms(Programs):
         sin_q3_back_down = a3*sin_swing_q3_back_down/effective_q3_2 + d4*cos_swing_q3_back/effective_q3_2
         cos_q3_back_up = a3*cos_swing_q3_back/effective_q3_2 + d4*sin_swing_q3_back_down/effective_q3_2
         sin_q3_back_up = d4*cos_swing_q3_back/effective_q3_2 - a3*sin_swing_q3_back_down/effective_q3_2
-        if everywhere(reach_back > 1e-11*machine_scale):
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = select(length_q2_squared_back_down > 0.0, root(length_q2_squared_back_down), 1.0)
-            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
-            sin_q2_back_down = across_q2_back_down/length_q2_back_down
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = select(length_q2_squared_back_up > 0.0, root(length_q2_squared_back_up), 1.0)
-            cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
-            sin_q2_back_up = across_q2_back_up/length_q2_back_up
-        else:
+
+        def elsewhere_cos_q2_back_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
-            arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = select(
-                (length_q2_squared_back_down > 0.0) & (reach_back > 1e-11*machine_scale),
-                root(length_q2_squared_back_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_back_down = select(
-                reach_back > 1e-11*machine_scale,
-                along_q2_back_down/length_q2_back_down,
-                cos(free_a2),
-            )
-            sin_q2_back_down = select(
-                reach_back > 1e-11*machine_scale,
-                across_q2_back_down/length_q2_back_down,
-                sin(free_a2),
-            )
-            arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
-            arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
-            across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
-            length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
-            length_q2_back_up = select(
-                (length_q2_squared_back_up > 0.0) & (reach_back > 1e-11*machine_scale),
-                root(length_q2_squared_back_up),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_back_up = select(reach_back > 1e-11*machine_scale, along_q2_back_up/length_q2_back_up, cos(free_a2))
-            sin_q2_back_up = select(reach_back > 1e-11*machine_scale, across_q2_back_up/length_q2_back_up, sin(free_a2))
+            cos_q2_back_down = cos(free_a2)  # its reference where it is free
+            sin_q2_back_down = sin(free_a2)
+            cos_q2_back_up = cos_q2_back_down  # its reference where it is free
+            sin_q2_back_up = sin_q2_back_down
+            return (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up)
+
+        arm_along_q2_back_down = d4*cos_q3_back_down - a3*sin_q3_back_down
+        arm_across_q2_back_down = a2 + a3*cos_q3_back_down + d4*sin_q3_back_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_back_down = arm_across_q2_back_down*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+        across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back_down*wrist_x_from_q1_back
+        length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
+        length_q2_back_down = select(length_q2_squared_back_down > 0.0, root(length_q2_squared_back_down), 1.0)
+        cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
+        sin_q2_back_down = across_q2_back_down/length_q2_back_down
+        arm_along_q2_back_up = d4*cos_q3_back_up - a3*sin_q3_back_up
+        arm_across_q2_back_up = a2 + a3*cos_q3_back_up + d4*sin_q3_back_up
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_back_up = arm_across_q2_back_up*wrist_y_from_q1 + arm_along_q2_back_up*wrist_x_from_q1_back
+        across_q2_back_up = arm_along_q2_back_up*wrist_y_from_q1 - arm_across_q2_back_up*wrist_x_from_q1_back
+        length_q2_squared_back_up = across_q2_back_up*across_q2_back_up + along_q2_back_up*along_q2_back_up
+        length_q2_back_up = select(length_q2_squared_back_up > 0.0, root(length_q2_squared_back_up), 1.0)
+        cos_q2_back_up = along_q2_back_up/length_q2_back_up  # its reference where it is free
+        sin_q2_back_up = across_q2_back_up/length_q2_back_up
+        cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up = elsewhere(
+            reach_back > 1e-11*machine_scale,
+            (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up),
+            elsewhere_cos_q2_back_down,
+            (ref_a2,),
+        )
         refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # q3: out of reach
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(

@@ -10,13 +10,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -100,32 +101,25 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2 = root(sine_square_a2)*sigma_elbow
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = select(
-                across_a1*across_a1 + along_a1*along_a1 > 0.0,
-                root(across_a1*across_a1 + along_a1*along_a1),
-                1.0,
-            )
-            cos_a1 = along_a1/length_a1  # its reference where it is free
-            sin_a1 = across_a1/length_a1
-        else:
+
+        def elsewhere_cos_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1 = arm_along_a1*y - arm_across_a1*x
-            length_a1 = select(
-                (reach > 1e-11*machine_scale) & (across_a1*across_a1 + along_a1*along_a1 > 0.0),
-                root(across_a1*across_a1 + along_a1*along_a1),
-                1.0,
-            )
-            # its reference where it is free
-            cos_a1 = select(reach > 1e-11*machine_scale, along_a1/length_a1, cos(free_a1))
-            sin_a1 = select(reach > 1e-11*machine_scale, across_a1/length_a1, sin(free_a1))
+            cos_a1 = cos(free_a1)  # its reference where it is free
+            sin_a1 = sin(free_a1)
+            return (cos_a1, sin_a1)
+
+        arm_along_a1 = link_length_1 + link_length_2*cos_a2
+        arm_across_a1 = link_length_2*sin_a2
+        along_a1 = arm_across_a1*y + arm_along_a1*x  # a1: linear pair in the x and y equations
+        across_a1 = arm_along_a1*y - arm_across_a1*x
+        length_a1 = select(
+            across_a1*across_a1 + along_a1*along_a1 > 0.0,
+            root(across_a1*across_a1 + along_a1*along_a1),
+            1.0,
+        )
+        cos_a1 = along_a1/length_a1  # its reference where it is free
+        sin_a1 = across_a1/length_a1
+        cos_a1, sin_a1 = elsewhere(reach > 1e-11*machine_scale, (cos_a1, sin_a1), elsewhere_cos_a1, (ref_a1,))
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -195,47 +189,35 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2_right = root(sine_square_a2)
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = select(length_a1_squared_right > 0.0, root(length_a1_squared_right), 1.0)
-            cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
-            sin_a1_right = across_a1_right/length_a1_right
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = select(length_a1_squared_left > 0.0, root(length_a1_squared_left), 1.0)
-            cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
-            sin_a1_left = across_a1_left/length_a1_left
-        else:
+
+        def elsewhere_cos_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
-            along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
-            across_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
-            length_a1_right = select(
-                (length_a1_squared_right > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a1_squared_right),
-                1.0,
-            )
-            # its reference where it is free
-            cos_a1_right = select(reach > 1e-11*machine_scale, along_a1_right/length_a1_right, cos(free_a1))
-            sin_a1_right = select(reach > 1e-11*machine_scale, across_a1_right/length_a1_right, sin(free_a1))
-            along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
-            across_a1_left = arm_across_a1_right*x + arm_along_a1*y
-            length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
-            length_a1_left = select(
-                (length_a1_squared_left > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a1_squared_left),
-                1.0,
-            )
-            # its reference where it is free
-            cos_a1_left = select(reach > 1e-11*machine_scale, along_a1_left/length_a1_left, cos(free_a1))
-            sin_a1_left = select(reach > 1e-11*machine_scale, across_a1_left/length_a1_left, sin(free_a1))
+            cos_a1_right = cos(free_a1)  # its reference where it is free
+            sin_a1_right = sin(free_a1)
+            cos_a1_left = cos_a1_right  # its reference where it is free
+            sin_a1_left = sin_a1_right
+            return (cos_a1_right, sin_a1_right, cos_a1_left, sin_a1_left)
+
+        arm_along_a1 = link_length_1 + link_length_2*cos_a2
+        arm_across_a1_right = link_length_2*sin_a2_right
+        along_a1_right = arm_across_a1_right*y + arm_along_a1*x  # a1: linear pair in the x and y equations
+        across_a1_right = arm_along_a1*y - arm_across_a1_right*x
+        length_a1_squared_right = across_a1_right*across_a1_right + along_a1_right*along_a1_right
+        length_a1_right = select(length_a1_squared_right > 0.0, root(length_a1_squared_right), 1.0)
+        cos_a1_right = along_a1_right/length_a1_right  # its reference where it is free
+        sin_a1_right = across_a1_right/length_a1_right
+        along_a1_left = arm_along_a1*x - arm_across_a1_right*y  # a1: linear pair in the x and y equations
+        across_a1_left = arm_across_a1_right*x + arm_along_a1*y
+        length_a1_squared_left = across_a1_left*across_a1_left + along_a1_left*along_a1_left
+        length_a1_left = select(length_a1_squared_left > 0.0, root(length_a1_squared_left), 1.0)
+        cos_a1_left = along_a1_left/length_a1_left  # its reference where it is free
+        sin_a1_left = across_a1_left/length_a1_left
+        cos_a1_right, sin_a1_right, cos_a1_left, sin_a1_left = elsewhere(
+            reach > 1e-11*machine_scale,
+            (cos_a1_right, sin_a1_right, cos_a1_left, sin_a1_left),
+            elsewhere_cos_a1_right,
+            (ref_a1,),
+        )
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,

@@ -10,13 +10,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -156,32 +157,25 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
         sin_a3 = root(sine_square_a3)*sigma_elbow
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2 = link_length_2*sin_a3
-            along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
-            across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-            length_a2 = select(
-                across_a2*across_a2 + along_a2*along_a2 > 0.0,
-                root(across_a2*across_a2 + along_a2*along_a2),
-                1.0,
-            )
-            cos_a2 = along_a2/length_a2  # its reference where it is free
-            sin_a2 = across_a2/length_a2
-        else:
+
+        def elsewhere_cos_a2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2 = link_length_2*sin_a3
-            along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
-            across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-            length_a2 = select(
-                (reach > 1e-11*machine_scale) & (across_a2*across_a2 + along_a2*along_a2 > 0.0),
-                root(across_a2*across_a2 + along_a2*along_a2),
-                1.0,
-            )
-            # its reference where it is free
-            cos_a2 = select(reach > 1e-11*machine_scale, along_a2/length_a2, cos(free_a2))
-            sin_a2 = select(reach > 1e-11*machine_scale, across_a2/length_a2, sin(free_a2))
+            cos_a2 = cos(free_a2)  # its reference where it is free
+            sin_a2 = sin(free_a2)
+            return (cos_a2, sin_a2)
+
+        arm_along_a2 = link_length_1 + link_length_2*cos_a3
+        arm_across_a2 = link_length_2*sin_a3
+        along_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x  # a2: linear pair in the x and y equations
+        across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
+        length_a2 = select(
+            across_a2*across_a2 + along_a2*along_a2 > 0.0,
+            root(across_a2*across_a2 + along_a2*along_a2),
+            1.0,
+        )
+        cos_a2 = along_a2/length_a2  # its reference where it is free
+        sin_a2 = across_a2/length_a2
+        cos_a2, sin_a2 = elsewhere(reach > 1e-11*machine_scale, (cos_a2, sin_a2), elsewhere_cos_a2, (ref_a2,))
         axis_a1 = offset_a1 + z
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
@@ -311,49 +305,36 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
         sin_a3_right = root(sine_square_a3)
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2_right = link_length_2*sin_a3_right
-            # a2: linear pair in the x and y equations
-            along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
-            across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-            length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
-            length_a2_right = select(length_a2_squared_right > 0.0, root(length_a2_squared_right), 1.0)
-            cos_a2_right = along_a2_right/length_a2_right  # its reference where it is free
-            sin_a2_right = across_a2_right/length_a2_right
-            along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
-            across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
-            length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
-            length_a2_left = select(length_a2_squared_left > 0.0, root(length_a2_squared_left), 1.0)
-            cos_a2_left = along_a2_left/length_a2_left  # its reference where it is free
-            sin_a2_left = across_a2_left/length_a2_left
-        else:
+
+        def elsewhere_cos_a2_right(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2_right = link_length_2*sin_a3_right
-            # a2: linear pair in the x and y equations
-            along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
-            across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-            length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
-            length_a2_right = select(
-                (length_a2_squared_right > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a2_squared_right),
-                1.0,
-            )
-            # its reference where it is free
-            cos_a2_right = select(reach > 1e-11*machine_scale, along_a2_right/length_a2_right, cos(free_a2))
-            sin_a2_right = select(reach > 1e-11*machine_scale, across_a2_right/length_a2_right, sin(free_a2))
-            along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
-            across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
-            length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
-            length_a2_left = select(
-                (length_a2_squared_left > 0.0) & (reach > 1e-11*machine_scale),
-                root(length_a2_squared_left),
-                1.0,
-            )
-            # its reference where it is free
-            cos_a2_left = select(reach > 1e-11*machine_scale, along_a2_left/length_a2_left, cos(free_a2))
-            sin_a2_left = select(reach > 1e-11*machine_scale, across_a2_left/length_a2_left, sin(free_a2))
+            cos_a2_right = cos(free_a2)  # its reference where it is free
+            sin_a2_right = sin(free_a2)
+            cos_a2_left = cos_a2_right  # its reference where it is free
+            sin_a2_left = sin_a2_right
+            return (cos_a2_right, sin_a2_right, cos_a2_left, sin_a2_left)
+
+        arm_along_a2 = link_length_1 + link_length_2*cos_a3
+        arm_across_a2_right = link_length_2*sin_a3_right
+        # a2: linear pair in the x and y equations
+        along_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
+        across_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
+        length_a2_squared_right = across_a2_right*across_a2_right + along_a2_right*along_a2_right
+        length_a2_right = select(length_a2_squared_right > 0.0, root(length_a2_squared_right), 1.0)
+        cos_a2_right = along_a2_right/length_a2_right  # its reference where it is free
+        sin_a2_right = across_a2_right/length_a2_right
+        along_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y  # a2: linear pair in the x and y equations
+        across_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
+        length_a2_squared_left = across_a2_left*across_a2_left + along_a2_left*along_a2_left
+        length_a2_left = select(length_a2_squared_left > 0.0, root(length_a2_squared_left), 1.0)
+        cos_a2_left = along_a2_left/length_a2_left  # its reference where it is free
+        sin_a2_left = across_a2_left/length_a2_left
+        cos_a2_right, sin_a2_right, cos_a2_left, sin_a2_left = elsewhere(
+            reach > 1e-11*machine_scale,
+            (cos_a2_right, sin_a2_right, cos_a2_left, sin_a2_left),
+            elsewhere_cos_a2_right,
+            (ref_a2,),
+        )
         axis_a1 = offset_a1 + z
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(

@@ -10,13 +10,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     OrientationPrograms,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -122,18 +123,18 @@ class ArrayPrograms(OrientationPrograms):
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        if everywhere(radius_a > 1e-11):
-            along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
-            cos_a = along_a/radius_a  # its reference where it is free
-            across_a = r23_of_a*sigma_roll
-            sin_a = across_a/radius_a
-        else:
+
+        def elsewhere_cos_a(ref_a: Real) -> Reals:
             free_a = (ref_a - offset_a)*DEGREE
-            along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
-            length_a = select(radius_a > 1e-11, radius_a, 1.0)
-            cos_a = select(radius_a > 1e-11, along_a/length_a, cos(free_a))  # its reference where it is free
-            across_a = r23_of_a*sigma_roll
-            sin_a = select(radius_a > 1e-11, across_a/length_a, sin(free_a))
+            cos_a = cos(free_a)  # its reference where it is free
+            sin_a = sin(free_a)
+            return (cos_a, sin_a)
+
+        along_a = r13_of_a*sigma_roll  # a: polar angle in the r13 and r23 equations
+        cos_a = along_a/radius_a  # its reference where it is free
+        across_a = r23_of_a*sigma_roll
+        sin_a = across_a/radius_a
+        cos_a, sin_a = elsewhere(radius_a > 1e-11, (cos_a, sin_a), elsewhere_cos_a, (ref_a,))
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
         axis_a = nearest_period(offset_a + atan2(sin_a, cos_a)/DEGREE, near_a)  # A: its turn
@@ -261,18 +262,25 @@ class ArrayPrograms(OrientationPrograms):
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        if everywhere(radius_a > 1e-11):
-            cos_a_positive = r13_of_a/radius_a  # its reference where it is free
-            sin_a_positive = r23_of_a/radius_a
-            cos_a_negative = -cos_a_positive  # its reference where it is free
-            sin_a_negative = -sin_a_positive
-        else:
+
+        def elsewhere_cos_a_positive(ref_a: Real) -> Reals:
             free_a = (ref_a - offset_a)*DEGREE
-            length_a = select(radius_a > 1e-11, radius_a, 1.0)
-            cos_a_positive = select(radius_a > 1e-11, r13_of_a/length_a, cos(free_a))  # its reference where it is free
-            sin_a_positive = select(radius_a > 1e-11, r23_of_a/length_a, sin(free_a))
-            cos_a_negative = select(radius_a > 1e-11, -r13_of_a/length_a, cos(free_a))  # its reference where it is free
-            sin_a_negative = select(radius_a > 1e-11, -r23_of_a/length_a, sin(free_a))
+            cos_a_positive = cos(free_a)  # its reference where it is free
+            sin_a_positive = sin(free_a)
+            cos_a_negative = cos_a_positive  # its reference where it is free
+            sin_a_negative = sin_a_positive
+            return (cos_a_positive, sin_a_positive, cos_a_negative, sin_a_negative)
+
+        cos_a_positive = r13_of_a/radius_a  # its reference where it is free
+        sin_a_positive = r23_of_a/radius_a
+        cos_a_negative = -cos_a_positive  # its reference where it is free
+        sin_a_negative = -sin_a_positive
+        cos_a_positive, sin_a_positive, cos_a_negative, sin_a_negative = elsewhere(
+            radius_a > 1e-11,
+            (cos_a_positive, sin_a_positive, cos_a_negative, sin_a_negative),
+            elsewhere_cos_a_positive,
+            (ref_a,),
+        )
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
         # A: its turn

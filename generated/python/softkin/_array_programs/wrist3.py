@@ -10,13 +10,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     OrientationPrograms,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -138,18 +139,18 @@ class ArrayPrograms(OrientationPrograms):
             Status.BAD_INPUT,
         )
         radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
-        if everywhere(radius_c > 1e-11):
-            along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
-            cos_c = along_c/radius_c  # its reference where it is free
-            across_c = -r32*sigma_hand
-            sin_c = across_c/radius_c
-        else:
+
+        def elsewhere_cos_c(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
-            along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
-            length_c = select(radius_c > 1e-11, radius_c, 1.0)
-            cos_c = select(radius_c > 1e-11, along_c/length_c, cos(free_c))  # its reference where it is free
-            across_c = -r32*sigma_hand
-            sin_c = select(radius_c > 1e-11, across_c/length_c, sin(free_c))
+            cos_c = cos(free_c)  # its reference where it is free
+            sin_c = sin(free_c)
+            return (cos_c, sin_c)
+
+        along_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations
+        cos_c = along_c/radius_c  # its reference where it is free
+        across_c = -r32*sigma_hand
+        sin_c = across_c/radius_c
+        cos_c, sin_c = elsewhere(radius_c > 1e-11, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
         r22_before_c = r22*cos_c + r21*sin_c
         r12_before_c = r12*cos_c + r11*sin_c
         sin_a = -r12_before_c
@@ -279,18 +280,25 @@ class ArrayPrograms(OrientationPrograms):
             Status.BAD_INPUT,
         )
         radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
-        if everywhere(radius_c > 1e-11):
-            cos_c_down = r31/radius_c  # its reference where it is free
-            sin_c_down = -r32/radius_c
-            cos_c_up = -cos_c_down  # its reference where it is free
-            sin_c_up = -sin_c_down
-        else:
+
+        def elsewhere_cos_c_down(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
-            length_c = select(radius_c > 1e-11, radius_c, 1.0)
-            cos_c_down = select(radius_c > 1e-11, r31/length_c, cos(free_c))  # its reference where it is free
-            sin_c_down = select(radius_c > 1e-11, -r32/length_c, sin(free_c))
-            cos_c_up = select(radius_c > 1e-11, -r31/length_c, cos(free_c))  # its reference where it is free
-            sin_c_up = select(radius_c > 1e-11, r32/length_c, sin(free_c))
+            cos_c_down = cos(free_c)  # its reference where it is free
+            sin_c_down = sin(free_c)
+            cos_c_up = cos_c_down  # its reference where it is free
+            sin_c_up = sin_c_down
+            return (cos_c_down, sin_c_down, cos_c_up, sin_c_up)
+
+        cos_c_down = r31/radius_c  # its reference where it is free
+        sin_c_down = -r32/radius_c
+        cos_c_up = -cos_c_down  # its reference where it is free
+        sin_c_up = -sin_c_down
+        cos_c_down, sin_c_down, cos_c_up, sin_c_up = elsewhere(
+            radius_c > 1e-11,
+            (cos_c_down, sin_c_down, cos_c_up, sin_c_up),
+            elsewhere_cos_c_down,
+            (ref_c,),
+        )
         r22_before_c_down = r22*cos_c_down + r21*sin_c_down
         r12_before_c_down = r12*cos_c_down + r11*sin_c_down
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
