@@ -37,7 +37,7 @@ Shape = str | tuple["Shape", ...]
 """Names, nested as the tuples of the method's arguments and results are."""
 
 _SCALAR, _ARRAY = ScalarPrinter(), ArrayPrinter()
-_MODULO_TURNS = ScalarPrinter(modulo_turns=True)
+_MODULO_TURNS, _ARRAY_TURNS = ScalarPrinter(modulo_turns=True), ArrayPrinter(modulo_turns=True)
 
 
 @dataclass(frozen=True)
@@ -174,7 +174,8 @@ def _array_item_lines(item: Item, constants: Collection[sp.Symbol]) -> list[str]
     if isinstance(item, Arms):
         return array_arm_lines(item, constants, lambda inner: _array_item_lines(inner, constants), _ARRAY)
     assert isinstance(item, Let | Solve)
-    return binding_lines(item, _ARRAY)
+    is_turn = isinstance(item, Let) and isinstance(item.value, NearestPeriod)
+    return binding_lines(item, _ARRAY_TURNS if is_turn else _ARRAY)
 
 
 def functions(programs: Sequence[Program]) -> list[str]:

@@ -81,11 +81,14 @@ def array_method(kin: Kinematics) -> Method:
 def array_lines(kin: Kinematics, method: Method) -> list[str]:
     """Its body."""
     values = {o.name: _ARRAY.print(o.value) for o in method.program.outputs}
-    lines = [*array_statements(method), "return ("]
-    for choice in choices(len(kin.branches)):
-        refusal = values[suffixed(REFUSAL, signs(kin), choice)]
+    lines = array_statements(method)
+    refusals = [values[suffixed(REFUSAL, signs(kin), choice)] for choice in choices(len(kin.branches))]
+    statuses = {refusal: f"status{refusal.removeprefix(REFUSAL)}" if refusal != "0.0" else "status" for refusal in refusals}
+    lines += [f"{status} = refused(status, {refusal})" for refusal, status in statuses.items() if status != "status"]
+    lines.append("return (")
+    for choice, refusal in zip(choices(len(kin.branches)), refusals, strict=True):
         axes = _tuple([values[suffixed(j.axis.name, signs(kin), choice)] for j in kin.mechanism.joints])
-        lines += fold(f"({axes}, refused(status, {refusal})),", 4)
+        lines += fold(f"({axes}, {statuses[refusal]}),", 4)
     return [*lines, ")"]
 
 

@@ -15,8 +15,8 @@ from softkin._types import Status
 
 __all__ = [
     "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Vector",
-    "StartedPrograms", "Truth", "absolute", "advanced", "atan2", "cos", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "passed",
-    "refused", "require", "root", "select", "settled", "sin", "solve",
+    "StartedPrograms", "Truth", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "passed",
+    "refused", "require", "root", "select", "settled", "sin", "solve", "sqrt",
 ]  # fmt: skip
 
 Array: TypeAlias = NDArray[np.float64]
@@ -157,9 +157,22 @@ def root(x: Real) -> Real:
     return length
 
 
+def sqrt(x: Real) -> Real:
+    """The square root of what is no negative number."""
+    length: Array = np.sqrt(x)
+    return length
+
+
 def atan2(y: Real, x: Real) -> Real:
     """The angle of (x, y) in radians, in (-pi, pi]; 0 for (0, 0). Zeros have no sign."""
     angle: Array = np.arctan2(y + 0.0, x + 0.0)
+    return angle
+
+
+def degrees(y: Real, x: Real) -> Real:
+    """The angle of (x, y) in degrees, modulo turns: -180 is as good as 180. 0 for (0, 0)."""
+    angle: Array = np.arctan2(y, x + 0.0)
+    angle /= DEGREE
     return angle
 
 

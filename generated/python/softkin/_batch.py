@@ -103,15 +103,22 @@ def inverse_all(
     """Every slot of every row."""
     table = Table(robot, positions, rotations, references)
     every, turns = slots((AUTOMATIC,) * robot.BRANCHES), (0.0,) * len(robot.PERIOD_AXES)
-    axes, statuses = np.empty((table.count, len(every), len(robot.AXES))), np.empty((table.count, len(every)), np.uint8)
+    width, signs = len(robot.AXES), [s for _, s in every]
+    axes, statuses = np.empty((table.count, len(every), width)), np.empty((table.count, len(every)), np.uint8)
+    # Columns whose distance is no power of two: such columns displace each other from the cache when they become rows.
+    columns_of_slots = np.empty((len(every), width, min(table.count, CHUNK) + 8))
     for rows in _chunks(table.count):
         poses = table.at(rows)
+        cells = columns_of_slots[:, :, : poses.count]
         with np.errstate(all="ignore"):
-            tried = programs.every_branch(poses.position, poses.rotation, turns, poses.reference, [s for _, s in every])
-            for slot, (found, status) in enumerate(tried):
-                status = _limited(robot, programs, found, status)
-                _write(axes[rows, slot], found, status != Status.OK)
-                statuses[rows, slot] = status
+            for slot, (found, status) in enumerate(
+                programs.every_branch(poses.position, poses.rotation, turns, poses.reference, signs)
+            ):
+                statuses[rows, slot] = _limited(robot, programs, found, status)
+                for i, value in enumerate(found):
+                    cells[slot, i] = value
+        axes[rows] = cells.transpose(2, 0, 1)
+        axes[rows][statuses[rows] != Status.OK] = np.nan
     return axes, statuses
 
 

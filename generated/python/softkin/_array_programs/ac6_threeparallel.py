@@ -17,6 +17,7 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_on_arc,
     nearest_period,
@@ -26,6 +27,7 @@ from softkin._array import (
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -212,7 +214,7 @@ class ArrayPrograms(Programs):
         )
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
-        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
@@ -232,7 +234,7 @@ class ArrayPrograms(Programs):
         cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
-        radius_q6 = root(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
 
         def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -284,7 +286,7 @@ class ArrayPrograms(Programs):
             across_q6_of_q3 = (
                 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )
-            swing_q6_of_q3 = root(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+            swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
 
             def elsewhere_highest_q6_of_q3() -> Reals:
                 highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
@@ -333,7 +335,7 @@ class ArrayPrograms(Programs):
             sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
             # what the motion changes of the pose
             cost_q6_of_q3 = (
-                root(
+                sqrt(
                     (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
                     + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
                 )
@@ -373,7 +375,7 @@ class ArrayPrograms(Programs):
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
-        reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (a3 + reach - a2)*(a2 + a3 + reach)*(a2 + a3 - reach)*(a2 + reach - a3)/(scale_q3*scale_q3)
         # q3: out of reach
@@ -394,7 +396,7 @@ class ArrayPrograms(Programs):
         across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         length_q2 = select(
             across_q2*across_q2 + along_q2*along_q2 > 0.0,
-            root(across_q2*across_q2 + along_q2*along_q2),
+            sqrt(across_q2*across_q2 + along_q2*along_q2),
             1.0,
         )
         cos_q2 = along_q2/length_q2  # its reference where it is free
@@ -406,21 +408,21 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: its turn
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
         cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
         sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
         cos_q4 = r22_from_q1_before_q6*cos_q23 + r21_from_q1_before_q56*sin_q23  # q4: what the sum q234 leaves
@@ -431,21 +433,21 @@ class ArrayPrograms(Programs):
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_q4, cos_q4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = nearest_period(offset_a4 + degrees(sin_q4, cos_q4), near_a4)  # A4: its turn
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
         near_a5 = select(
             absolute(turn_a5) > 0.0,
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5 = nearest_period(offset_a5 + atan2(q6_radius_of_q5, cos_q5)/DEGREE, near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + degrees(q6_radius_of_q5, cos_q5), near_a5)  # A5: its turn
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
             select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
             open_a6,
         )
-        axis_a6 = nearest_period(offset_a6 + atan2(sin_q6, cos_q6)/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -554,7 +556,7 @@ class ArrayPrograms(Programs):
         )
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
-        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
@@ -584,7 +586,7 @@ class ArrayPrograms(Programs):
         r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
         r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
         # q6: direction and distance of a point
-        radius_q6_left = root(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
+        radius_q6_left = sqrt(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
 
         def elsewhere_cos_q6_before_q6_of_q3_left_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -650,7 +652,7 @@ class ArrayPrograms(Programs):
                 2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_down
                 + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )
-            swing_q6_of_q3_left_down = root(
+            swing_q6_of_q3_left_down = sqrt(
                 across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
             )
 
@@ -717,7 +719,7 @@ class ArrayPrograms(Programs):
             sin_q6_after_q6_of_q3_left_down = sin(moved_q6_of_q3_left_down)
             # what the motion changes of the pose
             cost_q6_of_q3_left_down = (
-                root(
+                sqrt(
                     (
                         cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down
                     )*(cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down)
@@ -764,7 +766,7 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
         # what the unknown links must span
         wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
-        reach_left_down = root(
+        reach_left_down = sqrt(
             wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
         )
         # kept as a product
@@ -828,7 +830,7 @@ class ArrayPrograms(Programs):
         r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
         r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
         # q6: direction and distance of a point
-        radius_q6_right = root(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
+        radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
 
         def elsewhere_cos_q6_before_q6_of_q3_right_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -890,7 +892,7 @@ class ArrayPrograms(Programs):
                 2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down
                 + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )
-            swing_q6_of_q3_right_down = root(
+            swing_q6_of_q3_right_down = sqrt(
                 across_q6_of_q3_right_down*across_q6_of_q3_right_down
                 + along_q6_of_q3_right_down*along_q6_of_q3_right_down
             )
@@ -958,7 +960,7 @@ class ArrayPrograms(Programs):
             sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
             # what the motion changes of the pose
             cost_q6_of_q3_right_down = (
-                root(
+                sqrt(
                     (
                         cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
                     )*(cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down)
@@ -1008,7 +1010,7 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
         # what the unknown links must span
         wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
-        reach_right_down = root(
+        reach_right_down = sqrt(
             wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
             + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
         )
@@ -1103,7 +1105,7 @@ class ArrayPrograms(Programs):
                 2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
                 + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )
-            swing_q6_of_q3_left_up = root(
+            swing_q6_of_q3_left_up = sqrt(
                 across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
             )
 
@@ -1167,7 +1169,7 @@ class ArrayPrograms(Programs):
             sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
             # what the motion changes of the pose
             cost_q6_of_q3_left_up = (
-                root(
+                sqrt(
                     (
                         cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
                     )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
@@ -1213,7 +1215,7 @@ class ArrayPrograms(Programs):
         wrist_x_from_q1_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_up
         r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
         wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
-        reach_left_up = root(
+        reach_left_up = sqrt(
             wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
         )
         # kept as a product
@@ -1299,7 +1301,7 @@ class ArrayPrograms(Programs):
                 2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
                 + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )
-            swing_q6_of_q3_right_up = root(
+            swing_q6_of_q3_right_up = sqrt(
                 across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
             )
 
@@ -1363,7 +1365,7 @@ class ArrayPrograms(Programs):
             sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
             # what the motion changes of the pose
             cost_q6_of_q3_right_up = (
-                root(
+                sqrt(
                     (
                         cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
                     )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
@@ -1410,7 +1412,7 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
         # what the unknown links must span
         wrist_y_from_q1_right_up = wrist_z + d5*r22_from_q1_before_q6_right_up - d1
-        reach_right_up = root(
+        reach_right_up = sqrt(
             wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
         )
         # kept as a product
@@ -1474,7 +1476,7 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_q1_left, cos_q1_left)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + degrees(sin_q1_left, cos_q1_left), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -1482,9 +1484,7 @@ class ArrayPrograms(Programs):
             open_a2,
         )
         # A2: its turn
-        axis_a2_left_up_down = nearest_period(
-            offset_a2 + atan2(sin_q2_left_up_down, cos_q2_left_up_down)/DEGREE, near_a2,
-        )
+        axis_a2_left_up_down = nearest_period(offset_a2 + degrees(sin_q2_left_up_down, cos_q2_left_up_down), near_a2)
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
@@ -1492,9 +1492,7 @@ class ArrayPrograms(Programs):
             open_a3,
         )
         # A3: its turn
-        axis_a3_left_up_down = nearest_period(
-            offset_a3 + atan2(sin_q3_left_up_down, cos_q3_left_down)/DEGREE, near_a3,
-        )
+        axis_a3_left_up_down = nearest_period(offset_a3 + degrees(sin_q3_left_up_down, cos_q3_left_down), near_a3)
         cos_q23_left_up_down = cos_q2_left_up_down*cos_q3_left_down - sin_q2_left_up_down*sin_q3_left_up_down
         sin_q23_left_up_down = cos_q2_left_up_down*sin_q3_left_up_down + cos_q3_left_down*sin_q2_left_up_down
         # q4: what the sum q234 leaves
@@ -1513,9 +1511,7 @@ class ArrayPrograms(Programs):
             open_a4,
         )
         # A4: its turn
-        axis_a4_left_up_down = nearest_period(
-            offset_a4 + atan2(sin_q4_left_up_down, cos_q4_left_up_down)/DEGREE, near_a4,
-        )
+        axis_a4_left_up_down = nearest_period(offset_a4 + degrees(sin_q4_left_up_down, cos_q4_left_up_down), near_a4)
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
         near_a5 = select(
             absolute(turn_a5) > 0.0,
@@ -1523,7 +1519,7 @@ class ArrayPrograms(Programs):
             open_a5,
         )
         # A5: its turn
-        axis_a5_left_down = nearest_period(offset_a5 + atan2(radius_q6_left, -r23_from_q1_left)/DEGREE, near_a5)
+        axis_a5_left_down = nearest_period(offset_a5 + degrees(radius_q6_left, -r23_from_q1_left), near_a5)
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
@@ -1531,17 +1527,16 @@ class ArrayPrograms(Programs):
             open_a6,
         )
         # A6: its turn
-        axis_a6_left_down = nearest_period(offset_a6 + atan2(sin_q6_left_down, cos_q6_left_down)/DEGREE, near_a6)
+        axis_a6_left_down = nearest_period(offset_a6 + degrees(sin_q6_left_down, cos_q6_left_down), near_a6)
         refusal_right_down = select(sine_square_q3_right_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_q1_right, cos_q1_right)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + degrees(sin_q1_right, cos_q1_right), near_a1)  # A1: its turn
         # A2: its turn
         axis_a2_right_up_down = nearest_period(
-            offset_a2 + atan2(sin_q2_right_up_down, cos_q2_right_up_down)/DEGREE, near_a2,
+            offset_a2 + degrees(sin_q2_right_up_down, cos_q2_right_up_down),
+            near_a2,
         )
         # A3: its turn
-        axis_a3_right_up_down = nearest_period(
-            offset_a3 + atan2(sin_q3_right_up_down, cos_q3_right_down)/DEGREE, near_a3,
-        )
+        axis_a3_right_up_down = nearest_period(offset_a3 + degrees(sin_q3_right_up_down, cos_q3_right_down), near_a3)
         cos_q23_right_up_down = cos_q2_right_up_down*cos_q3_right_down - sin_q2_right_up_down*sin_q3_right_up_down
         sin_q23_right_up_down = cos_q2_right_up_down*sin_q3_right_up_down + cos_q3_right_down*sin_q2_right_up_down
         # q4: what the sum q234 leaves
@@ -1555,20 +1550,20 @@ class ArrayPrograms(Programs):
         )
         # A4: its turn
         axis_a4_right_up_down = nearest_period(
-            offset_a4 + atan2(sin_q4_right_up_down, cos_q4_right_up_down)/DEGREE, near_a4,
+            offset_a4 + degrees(sin_q4_right_up_down, cos_q4_right_up_down),
+            near_a4,
         )
         # A5: its turn
-        axis_a5_right_down = nearest_period(offset_a5 + atan2(radius_q6_right, -r23_from_q1_right)/DEGREE, near_a5)
+        axis_a5_right_down = nearest_period(offset_a5 + degrees(radius_q6_right, -r23_from_q1_right), near_a5)
         # A6: its turn
-        axis_a6_right_down = nearest_period(offset_a6 + atan2(sin_q6_right_down, cos_q6_right_down)/DEGREE, near_a6)
+        axis_a6_right_down = nearest_period(offset_a6 + degrees(sin_q6_right_down, cos_q6_right_down), near_a6)
         # A2: its turn
         axis_a2_left_down_down = nearest_period(
-            offset_a2 + atan2(sin_q2_left_down_down, cos_q2_left_down_down)/DEGREE, near_a2,
+            offset_a2 + degrees(sin_q2_left_down_down, cos_q2_left_down_down),
+            near_a2,
         )
         # A3: its turn
-        axis_a3_left_down_down = nearest_period(
-            offset_a3 + atan2(-sin_q3_left_up_down, cos_q3_left_down)/DEGREE, near_a3,
-        )
+        axis_a3_left_down_down = nearest_period(offset_a3 + degrees(-sin_q3_left_up_down, cos_q3_left_down), near_a3)
         cos_q23_left_down_down = cos_q2_left_down_down*cos_q3_left_down + sin_q2_left_down_down*sin_q3_left_up_down
         sin_q23_left_down_down = cos_q3_left_down*sin_q2_left_down_down - cos_q2_left_down_down*sin_q3_left_up_down
         # q4: what the sum q234 leaves
@@ -1582,15 +1577,18 @@ class ArrayPrograms(Programs):
         )
         # A4: its turn
         axis_a4_left_down_down = nearest_period(
-            offset_a4 + atan2(sin_q4_left_down_down, cos_q4_left_down_down)/DEGREE, near_a4,
+            offset_a4 + degrees(sin_q4_left_down_down, cos_q4_left_down_down),
+            near_a4,
         )
         # A2: its turn
         axis_a2_right_down_down = nearest_period(
-            offset_a2 + atan2(sin_q2_right_down_down, cos_q2_right_down_down)/DEGREE, near_a2,
+            offset_a2 + degrees(sin_q2_right_down_down, cos_q2_right_down_down),
+            near_a2,
         )
         # A3: its turn
         axis_a3_right_down_down = nearest_period(
-            offset_a3 + atan2(-sin_q3_right_up_down, cos_q3_right_down)/DEGREE, near_a3,
+            offset_a3 + degrees(-sin_q3_right_up_down, cos_q3_right_down),
+            near_a3,
         )
         cos_q23_right_down_down = (
             cos_q2_right_down_down*cos_q3_right_down + sin_q2_right_down_down*sin_q3_right_up_down
@@ -1609,13 +1607,14 @@ class ArrayPrograms(Programs):
         )
         # A4: its turn
         axis_a4_right_down_down = nearest_period(
-            offset_a4 + atan2(sin_q4_right_down_down, cos_q4_right_down_down)/DEGREE, near_a4,
+            offset_a4 + degrees(sin_q4_right_down_down, cos_q4_right_down_down),
+            near_a4,
         )
         refusal_left_up = select(sine_square_q3_left_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
         # A2: its turn
-        axis_a2_left_up_up = nearest_period(offset_a2 + atan2(sin_q2_left_up_up, cos_q2_left_up_up)/DEGREE, near_a2)
+        axis_a2_left_up_up = nearest_period(offset_a2 + degrees(sin_q2_left_up_up, cos_q2_left_up_up), near_a2)
         # A3: its turn
-        axis_a3_left_up_up = nearest_period(offset_a3 + atan2(sin_q3_left_up_up, cos_q3_left_up)/DEGREE, near_a3)
+        axis_a3_left_up_up = nearest_period(offset_a3 + degrees(sin_q3_left_up_up, cos_q3_left_up), near_a3)
         cos_q23_left_up_up = cos_q2_left_up_up*cos_q3_left_up - sin_q2_left_up_up*sin_q3_left_up_up
         sin_q23_left_up_up = cos_q2_left_up_up*sin_q3_left_up_up + cos_q3_left_up*sin_q2_left_up_up
         # q4: what the sum q234 leaves
@@ -1626,18 +1625,15 @@ class ArrayPrograms(Programs):
             r21_from_q1_before_q56_left_up*cos_q23_left_up_up - r22_from_q1_before_q6_left_up*sin_q23_left_up_up
         )
         # A4: its turn
-        axis_a4_left_up_up = nearest_period(offset_a4 + atan2(sin_q4_left_up_up, cos_q4_left_up_up)/DEGREE, near_a4)
+        axis_a4_left_up_up = nearest_period(offset_a4 + degrees(sin_q4_left_up_up, cos_q4_left_up_up), near_a4)
         # A5: its turn
-        axis_a5_left_up = nearest_period(offset_a5 + atan2(-radius_q6_left, -r23_from_q1_left)/DEGREE, near_a5)
-        # A6: its turn
-        axis_a6_left_up = nearest_period(offset_a6 + atan2(sin_q6_left_up, cos_q6_left_up)/DEGREE, near_a6)
+        axis_a5_left_up = nearest_period(offset_a5 + degrees(-radius_q6_left, -r23_from_q1_left), near_a5)
+        axis_a6_left_up = nearest_period(offset_a6 + degrees(sin_q6_left_up, cos_q6_left_up), near_a6)  # A6: its turn
         refusal_right_up = select(sine_square_q3_right_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
         # A2: its turn
-        axis_a2_right_up_up = nearest_period(
-            offset_a2 + atan2(sin_q2_right_up_up, cos_q2_right_up_up)/DEGREE, near_a2,
-        )
+        axis_a2_right_up_up = nearest_period(offset_a2 + degrees(sin_q2_right_up_up, cos_q2_right_up_up), near_a2)
         # A3: its turn
-        axis_a3_right_up_up = nearest_period(offset_a3 + atan2(sin_q3_right_up_up, cos_q3_right_up)/DEGREE, near_a3)
+        axis_a3_right_up_up = nearest_period(offset_a3 + degrees(sin_q3_right_up_up, cos_q3_right_up), near_a3)
         cos_q23_right_up_up = cos_q2_right_up_up*cos_q3_right_up - sin_q2_right_up_up*sin_q3_right_up_up
         sin_q23_right_up_up = cos_q2_right_up_up*sin_q3_right_up_up + cos_q3_right_up*sin_q2_right_up_up
         # q4: what the sum q234 leaves
@@ -1648,19 +1644,15 @@ class ArrayPrograms(Programs):
             r21_from_q1_before_q56_right_up*cos_q23_right_up_up - r22_from_q1_before_q6_right_up*sin_q23_right_up_up
         )
         # A4: its turn
-        axis_a4_right_up_up = nearest_period(
-            offset_a4 + atan2(sin_q4_right_up_up, cos_q4_right_up_up)/DEGREE, near_a4,
-        )
+        axis_a4_right_up_up = nearest_period(offset_a4 + degrees(sin_q4_right_up_up, cos_q4_right_up_up), near_a4)
         # A5: its turn
-        axis_a5_right_up = nearest_period(offset_a5 + atan2(-radius_q6_right, -r23_from_q1_right)/DEGREE, near_a5)
+        axis_a5_right_up = nearest_period(offset_a5 + degrees(-radius_q6_right, -r23_from_q1_right), near_a5)
         # A6: its turn
-        axis_a6_right_up = nearest_period(offset_a6 + atan2(sin_q6_right_up, cos_q6_right_up)/DEGREE, near_a6)
+        axis_a6_right_up = nearest_period(offset_a6 + degrees(sin_q6_right_up, cos_q6_right_up), near_a6)
         # A2: its turn
-        axis_a2_left_down_up = nearest_period(
-            offset_a2 + atan2(sin_q2_left_down_up, cos_q2_left_down_up)/DEGREE, near_a2,
-        )
+        axis_a2_left_down_up = nearest_period(offset_a2 + degrees(sin_q2_left_down_up, cos_q2_left_down_up), near_a2)
         # A3: its turn
-        axis_a3_left_down_up = nearest_period(offset_a3 + atan2(-sin_q3_left_up_up, cos_q3_left_up)/DEGREE, near_a3)
+        axis_a3_left_down_up = nearest_period(offset_a3 + degrees(-sin_q3_left_up_up, cos_q3_left_up), near_a3)
         cos_q23_left_down_up = cos_q2_left_down_up*cos_q3_left_up + sin_q2_left_down_up*sin_q3_left_up_up
         sin_q23_left_down_up = cos_q3_left_up*sin_q2_left_down_up - cos_q2_left_down_up*sin_q3_left_up_up
         # q4: what the sum q234 leaves
@@ -1671,17 +1663,14 @@ class ArrayPrograms(Programs):
             r21_from_q1_before_q56_left_up*cos_q23_left_down_up - r22_from_q1_before_q6_left_up*sin_q23_left_down_up
         )
         # A4: its turn
-        axis_a4_left_down_up = nearest_period(
-            offset_a4 + atan2(sin_q4_left_down_up, cos_q4_left_down_up)/DEGREE, near_a4,
-        )
+        axis_a4_left_down_up = nearest_period(offset_a4 + degrees(sin_q4_left_down_up, cos_q4_left_down_up), near_a4)
         # A2: its turn
         axis_a2_right_down_up = nearest_period(
-            offset_a2 + atan2(sin_q2_right_down_up, cos_q2_right_down_up)/DEGREE, near_a2,
+            offset_a2 + degrees(sin_q2_right_down_up, cos_q2_right_down_up),
+            near_a2,
         )
         # A3: its turn
-        axis_a3_right_down_up = nearest_period(
-            offset_a3 + atan2(-sin_q3_right_up_up, cos_q3_right_up)/DEGREE, near_a3,
-        )
+        axis_a3_right_down_up = nearest_period(offset_a3 + degrees(-sin_q3_right_up_up, cos_q3_right_up), near_a3)
         cos_q23_right_down_up = cos_q2_right_down_up*cos_q3_right_up + sin_q2_right_down_up*sin_q3_right_up_up
         sin_q23_right_down_up = cos_q3_right_up*sin_q2_right_down_up - cos_q2_right_down_up*sin_q3_right_up_up
         # q4: what the sum q234 leaves
@@ -1695,63 +1684,68 @@ class ArrayPrograms(Programs):
         )
         # A4: its turn
         axis_a4_right_down_up = nearest_period(
-            offset_a4 + atan2(sin_q4_right_down_up, cos_q4_right_down_up)/DEGREE, near_a4,
+            offset_a4 + degrees(sin_q4_right_down_up, cos_q4_right_down_up),
+            near_a4,
         )
+        status_left_down = refused(status, refusal_left_down)
+        status_right_down = refused(status, refusal_right_down)
+        status_left_up = refused(status, refusal_left_up)
+        status_right_up = refused(status, refusal_right_up)
         return (
             (
                 (
                     axis_a1_left, axis_a2_left_up_down, axis_a3_left_up_down, axis_a4_left_up_down, axis_a5_left_down,
                     axis_a6_left_down,
                 ),
-                refused(status, refusal_left_down),
+                status_left_down,
             ),
             (
                 (
                     axis_a1_right, axis_a2_right_up_down, axis_a3_right_up_down, axis_a4_right_up_down,
                     axis_a5_right_down, axis_a6_right_down,
                 ),
-                refused(status, refusal_right_down),
+                status_right_down,
             ),
             (
                 (
                     axis_a1_left, axis_a2_left_down_down, axis_a3_left_down_down, axis_a4_left_down_down,
                     axis_a5_left_down, axis_a6_left_down,
                 ),
-                refused(status, refusal_left_down),
+                status_left_down,
             ),
             (
                 (
                     axis_a1_right, axis_a2_right_down_down, axis_a3_right_down_down, axis_a4_right_down_down,
                     axis_a5_right_down, axis_a6_right_down,
                 ),
-                refused(status, refusal_right_down),
+                status_right_down,
             ),
             (
                 (
                     axis_a1_left, axis_a2_left_up_up, axis_a3_left_up_up, axis_a4_left_up_up, axis_a5_left_up,
                     axis_a6_left_up,
                 ),
-                refused(status, refusal_left_up),
+                status_left_up,
             ),
             (
                 (
                     axis_a1_right, axis_a2_right_up_up, axis_a3_right_up_up, axis_a4_right_up_up, axis_a5_right_up,
                     axis_a6_right_up,
                 ),
-                refused(status, refusal_right_up),
+                status_right_up,
             ),
             (
                 (
                     axis_a1_left, axis_a2_left_down_up, axis_a3_left_down_up, axis_a4_left_down_up, axis_a5_left_up,
                     axis_a6_left_up,
                 ),
-                refused(status, refusal_left_up),
+                status_left_up,
             ),
             (
                 (
                     axis_a1_right, axis_a2_right_down_up, axis_a3_right_down_up, axis_a4_right_down_up,
                     axis_a5_right_up, axis_a6_right_up,
                 ),
-                refused(status, refusal_right_up),
+                status_right_up,
             ),
         )

@@ -15,16 +15,15 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -156,7 +155,7 @@ class ArrayPrograms(Programs):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
-        radius_a4 = root(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
 
         def elsewhere_cos_a4(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -181,7 +180,7 @@ class ArrayPrograms(Programs):
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_a4, cos_a4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = nearest_period(offset_a4 + degrees(sin_a4, cos_a4), near_a4)  # A4: its turn
         a4_radius_of_a5 = radius_a4*sigma_wrist
         sin_a5 = -r23
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
@@ -190,7 +189,7 @@ class ArrayPrograms(Programs):
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5 = nearest_period(offset_a5 + atan2(sin_a5, a4_radius_of_a5)/DEGREE, near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + degrees(sin_a5, a4_radius_of_a5), near_a5)  # A5: its turn
         r11_from_a4 = r11*cos_a4 - r31*sin_a4
         r12_from_a4 = r12*cos_a4 - r32*sin_a4
         sin_a6 = -r12_from_a4
@@ -200,7 +199,7 @@ class ArrayPrograms(Programs):
             select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
             open_a6,
         )
-        axis_a6 = nearest_period(offset_a6 + atan2(sin_a6, r11_from_a4)/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + degrees(sin_a6, r11_from_a4), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -292,7 +291,7 @@ class ArrayPrograms(Programs):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
-        radius_a4 = root(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
 
         def elsewhere_cos_a4_upright(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -324,15 +323,14 @@ class ArrayPrograms(Programs):
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        # A4: its turn
-        axis_a4_upright = nearest_period(offset_a4 + atan2(sin_a4_upright, cos_a4_upright)/DEGREE, near_a4)
+        axis_a4_upright = nearest_period(offset_a4 + degrees(sin_a4_upright, cos_a4_upright), near_a4)  # A4: its turn
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
         near_a5 = select(
             absolute(turn_a5) > 0.0,
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5_upright = nearest_period(offset_a5 + atan2(-r23, radius_a4)/DEGREE, near_a5)  # A5: its turn
+        axis_a5_upright = nearest_period(offset_a5 + degrees(-r23, radius_a4), near_a5)  # A5: its turn
         r11_from_a4_upright = r11*cos_a4_upright - r31*sin_a4_upright
         r12_from_a4_upright = r12*cos_a4_upright - r32*sin_a4_upright
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
@@ -342,15 +340,14 @@ class ArrayPrograms(Programs):
             open_a6,
         )
         # A6: its turn
-        axis_a6_upright = nearest_period(offset_a6 + atan2(-r12_from_a4_upright, r11_from_a4_upright)/DEGREE, near_a6)
-        # A4: its turn
-        axis_a4_flipped = nearest_period(offset_a4 + atan2(sin_a4_flipped, cos_a4_flipped)/DEGREE, near_a4)
-        axis_a5_flipped = nearest_period(offset_a5 + atan2(-r23, -radius_a4)/DEGREE, near_a5)  # A5: its turn
+        axis_a6_upright = nearest_period(offset_a6 + degrees(-r12_from_a4_upright, r11_from_a4_upright), near_a6)
+        axis_a4_flipped = nearest_period(offset_a4 + degrees(sin_a4_flipped, cos_a4_flipped), near_a4)  # A4: its turn
+        axis_a5_flipped = nearest_period(offset_a5 + degrees(-r23, -radius_a4), near_a5)  # A5: its turn
         r11_from_a4_flipped = r11*cos_a4_flipped - r31*sin_a4_flipped
         r12_from_a4_flipped = r12*cos_a4_flipped - r32*sin_a4_flipped
         # A6: its turn
-        axis_a6_flipped = nearest_period(offset_a6 + atan2(-r12_from_a4_flipped, r11_from_a4_flipped)/DEGREE, near_a6)
+        axis_a6_flipped = nearest_period(offset_a6 + degrees(-r12_from_a4_flipped, r11_from_a4_flipped), near_a6)
         return (
-            ((axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright), refused(status, 0.0)),
-            ((axis_a1, axis_a2, axis_a3, axis_a4_flipped, axis_a5_flipped, axis_a6_flipped), refused(status, 0.0)),
+            ((axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright), status),
+            ((axis_a1, axis_a2, axis_a3, axis_a4_flipped, axis_a5_flipped, axis_a6_flipped), status),
         )

@@ -15,8 +15,8 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
@@ -25,6 +25,7 @@ from softkin._array import (
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -220,7 +221,7 @@ class ArrayPrograms(Programs):
         )
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
-        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
@@ -241,7 +242,7 @@ class ArrayPrograms(Programs):
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
             (effective_q3 + reach - a2)*(a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)
@@ -267,7 +268,7 @@ class ArrayPrograms(Programs):
         across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         length_q2 = select(
             across_q2*across_q2 + along_q2*along_q2 > 0.0,
-            root(across_q2*across_q2 + along_q2*along_q2),
+            sqrt(across_q2*across_q2 + along_q2*along_q2),
             1.0,
         )
         cos_q2 = along_q2/length_q2  # its reference where it is free
@@ -279,7 +280,7 @@ class ArrayPrograms(Programs):
         r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         # q4: direction and distance of a point
-        radius_q4 = root(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
 
         def elsewhere_cos_q4(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -298,28 +299,28 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: its turn
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_q4, cos_q4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = nearest_period(offset_a4 + degrees(sin_q4, cos_q4), near_a4)  # A4: its turn
         q4_radius_of_q5 = radius_q4*sigma_hand
         r23_from_q123 = -r13_from_q1*cos_q23 - r33*sin_q23
         cos_q5 = -r23_from_q123  # q5: linear pair in the q4 radius and r23 equations
@@ -329,7 +330,7 @@ class ArrayPrograms(Programs):
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5 = nearest_period(offset_a5 + atan2(q4_radius_of_q5, cos_q5)/DEGREE, near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + degrees(q4_radius_of_q5, cos_q5), near_a5)  # A5: its turn
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
@@ -344,7 +345,7 @@ class ArrayPrograms(Programs):
             select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
             open_a6,
         )
-        axis_a6 = nearest_period(offset_a6 + atan2(r21_from_q1234, r22_from_q1234)/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + degrees(r21_from_q1234, r22_from_q1234), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -454,7 +455,7 @@ class ArrayPrograms(Programs):
         )
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
-        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
@@ -485,7 +486,7 @@ class ArrayPrograms(Programs):
         wrist_x_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach_front = root(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
+        reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3_front = (
             (effective_q3 + reach_front - a2)*(a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
@@ -540,7 +541,7 @@ class ArrayPrograms(Programs):
         r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
         r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
         # q4: direction and distance of a point
-        radius_q4_front_down = root(
+        radius_q4_front_down = sqrt(
             r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
         )
 
@@ -563,7 +564,7 @@ class ArrayPrograms(Programs):
             (ref_a4,),
         )
         wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
-        reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
+        reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3_back = (
             (effective_q3 + reach_back - a2)*(a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
@@ -614,7 +615,7 @@ class ArrayPrograms(Programs):
         r13_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down
         r23_from_q1_back = r23*cos_q1_back - r13*sin_q1_back
         # q4: direction and distance of a point
-        radius_q4_back_down = root(
+        radius_q4_back_down = sqrt(
             r13_from_q123_back_down*r13_from_q123_back_down + r23_from_q1_back*r23_from_q1_back
         )
 
@@ -640,7 +641,7 @@ class ArrayPrograms(Programs):
         cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up
         r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up
         # q4: direction and distance of a point
-        radius_q4_front_up = root(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
+        radius_q4_front_up = sqrt(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
 
         def elsewhere_cos_q4_front_up_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -664,7 +665,7 @@ class ArrayPrograms(Programs):
         cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up
         r13_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up
         # q4: direction and distance of a point
-        radius_q4_back_up = root(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
+        radius_q4_back_up = sqrt(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
 
         def elsewhere_cos_q4_back_up_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -691,7 +692,7 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_front = nearest_period(offset_a1 + atan2(sin_q1_front, cos_q1_front)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -699,7 +700,7 @@ class ArrayPrograms(Programs):
             open_a2,
         )
         # A2: its turn
-        axis_a2_front_down = nearest_period(offset_a2 + atan2(sin_q2_front_down, cos_q2_front_down)/DEGREE, near_a2)
+        axis_a2_front_down = nearest_period(offset_a2 + degrees(sin_q2_front_down, cos_q2_front_down), near_a2)
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
@@ -707,7 +708,7 @@ class ArrayPrograms(Programs):
             open_a3,
         )
         # A3: its turn
-        axis_a3_front_down = nearest_period(offset_a3 + atan2(sin_q3_front_down, cos_q3_front_down)/DEGREE, near_a3)
+        axis_a3_front_down = nearest_period(offset_a3 + degrees(sin_q3_front_down, cos_q3_front_down), near_a3)
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
@@ -716,7 +717,8 @@ class ArrayPrograms(Programs):
         )
         # A4: its turn
         axis_a4_front_down_down = nearest_period(
-            offset_a4 + atan2(sin_q4_front_down_down, cos_q4_front_down_down)/DEGREE, near_a4,
+            offset_a4 + degrees(sin_q4_front_down_down, cos_q4_front_down_down),
+            near_a4,
         )
         r23_from_q123_front_down = -r13_from_q1_front*cos_q23_front_down - r33*sin_q23_front_down
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
@@ -727,7 +729,8 @@ class ArrayPrograms(Programs):
         )
         # A5: its turn
         axis_a5_front_down_down = nearest_period(
-            offset_a5 + atan2(radius_q4_front_down, -r23_from_q123_front_down)/DEGREE, near_a5,
+            offset_a5 + degrees(radius_q4_front_down, -r23_from_q123_front_down),
+            near_a5,
         )
         r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
         r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
@@ -749,22 +752,25 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_front_down_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down),
+            near_a6,
         )
         refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        axis_a1_back = nearest_period(offset_a1 + atan2(sin_q1_back, cos_q1_back)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
         # A2: its turn
-        axis_a2_back_down = nearest_period(offset_a2 + atan2(sin_q2_back_down, cos_q2_back_down)/DEGREE, near_a2)
+        axis_a2_back_down = nearest_period(offset_a2 + degrees(sin_q2_back_down, cos_q2_back_down), near_a2)
         # A3: its turn
-        axis_a3_back_down = nearest_period(offset_a3 + atan2(sin_q3_back_down, cos_q3_back_down)/DEGREE, near_a3)
+        axis_a3_back_down = nearest_period(offset_a3 + degrees(sin_q3_back_down, cos_q3_back_down), near_a3)
         # A4: its turn
         axis_a4_back_down_down = nearest_period(
-            offset_a4 + atan2(sin_q4_back_down_down, cos_q4_back_down_down)/DEGREE, near_a4,
+            offset_a4 + degrees(sin_q4_back_down_down, cos_q4_back_down_down),
+            near_a4,
         )
         r23_from_q123_back_down = -r13_from_q1_back*cos_q23_back_down - r33*sin_q23_back_down
         # A5: its turn
         axis_a5_back_down_down = nearest_period(
-            offset_a5 + atan2(radius_q4_back_down, -r23_from_q123_back_down)/DEGREE, near_a5,
+            offset_a5 + degrees(radius_q4_back_down, -r23_from_q123_back_down),
+            near_a5,
         )
         r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
@@ -780,20 +786,23 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_back_down_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down),
+            near_a6,
         )
         # A2: its turn
-        axis_a2_front_up = nearest_period(offset_a2 + atan2(sin_q2_front_up, cos_q2_front_up)/DEGREE, near_a2)
+        axis_a2_front_up = nearest_period(offset_a2 + degrees(sin_q2_front_up, cos_q2_front_up), near_a2)
         # A3: its turn
-        axis_a3_front_up = nearest_period(offset_a3 + atan2(sin_q3_front_up, cos_q3_front_up)/DEGREE, near_a3)
+        axis_a3_front_up = nearest_period(offset_a3 + degrees(sin_q3_front_up, cos_q3_front_up), near_a3)
         # A4: its turn
         axis_a4_front_up_down = nearest_period(
-            offset_a4 + atan2(sin_q4_front_up_down, cos_q4_front_up_down)/DEGREE, near_a4,
+            offset_a4 + degrees(sin_q4_front_up_down, cos_q4_front_up_down),
+            near_a4,
         )
         r23_from_q123_front_up = -r13_from_q1_front*cos_q23_front_up - r33*sin_q23_front_up
         # A5: its turn
         axis_a5_front_up_down = nearest_period(
-            offset_a5 + atan2(radius_q4_front_up, -r23_from_q123_front_up)/DEGREE, near_a5,
+            offset_a5 + degrees(radius_q4_front_up, -r23_from_q123_front_up),
+            near_a5,
         )
         r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
         r21_from_q1234_front_up_down = (
@@ -805,21 +814,16 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_front_up_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down),
+            near_a6,
         )
-        # A2: its turn
-        axis_a2_back_up = nearest_period(offset_a2 + atan2(sin_q2_back_up, cos_q2_back_up)/DEGREE, near_a2)
-        # A3: its turn
-        axis_a3_back_up = nearest_period(offset_a3 + atan2(sin_q3_back_up, cos_q3_back_up)/DEGREE, near_a3)
+        axis_a2_back_up = nearest_period(offset_a2 + degrees(sin_q2_back_up, cos_q2_back_up), near_a2)  # A2: its turn
+        axis_a3_back_up = nearest_period(offset_a3 + degrees(sin_q3_back_up, cos_q3_back_up), near_a3)  # A3: its turn
         # A4: its turn
-        axis_a4_back_up_down = nearest_period(
-            offset_a4 + atan2(sin_q4_back_up_down, cos_q4_back_up_down)/DEGREE, near_a4,
-        )
+        axis_a4_back_up_down = nearest_period(offset_a4 + degrees(sin_q4_back_up_down, cos_q4_back_up_down), near_a4)
         r23_from_q123_back_up = -r13_from_q1_back*cos_q23_back_up - r33*sin_q23_back_up
         # A5: its turn
-        axis_a5_back_up_down = nearest_period(
-            offset_a5 + atan2(radius_q4_back_up, -r23_from_q123_back_up)/DEGREE, near_a5,
-        )
+        axis_a5_back_up_down = nearest_period(offset_a5 + degrees(radius_q4_back_up, -r23_from_q123_back_up), near_a5)
         r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
         r21_from_q1234_back_up_down = (
             -r21_from_q1_back*cos_q4_back_up_down - r11_from_q123_back_up*sin_q4_back_up_down
@@ -830,15 +834,18 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_back_up_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down),
+            near_a6,
         )
         # A4: its turn
         axis_a4_front_down_up = nearest_period(
-            offset_a4 + atan2(sin_q4_front_down_up, cos_q4_front_down_up)/DEGREE, near_a4,
+            offset_a4 + degrees(sin_q4_front_down_up, cos_q4_front_down_up),
+            near_a4,
         )
         # A5: its turn
         axis_a5_front_down_up = nearest_period(
-            offset_a5 + atan2(-radius_q4_front_down, -r23_from_q123_front_down)/DEGREE, near_a5,
+            offset_a5 + degrees(-radius_q4_front_down, -r23_from_q123_front_down),
+            near_a5,
         )
         r21_from_q1234_front_down_up = (
             -r21_from_q1_front*cos_q4_front_down_up - r11_from_q123_front_down*sin_q4_front_down_up
@@ -848,15 +855,15 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_front_down_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up),
+            near_a6,
         )
         # A4: its turn
-        axis_a4_back_down_up = nearest_period(
-            offset_a4 + atan2(sin_q4_back_down_up, cos_q4_back_down_up)/DEGREE, near_a4,
-        )
+        axis_a4_back_down_up = nearest_period(offset_a4 + degrees(sin_q4_back_down_up, cos_q4_back_down_up), near_a4)
         # A5: its turn
         axis_a5_back_down_up = nearest_period(
-            offset_a5 + atan2(-radius_q4_back_down, -r23_from_q123_back_down)/DEGREE, near_a5,
+            offset_a5 + degrees(-radius_q4_back_down, -r23_from_q123_back_down),
+            near_a5,
         )
         r21_from_q1234_back_down_up = (
             -r21_from_q1_back*cos_q4_back_down_up - r11_from_q123_back_down*sin_q4_back_down_up
@@ -866,89 +873,91 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_back_down_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up),
+            near_a6,
         )
         # A4: its turn
-        axis_a4_front_up_up = nearest_period(
-            offset_a4 + atan2(sin_q4_front_up_up, cos_q4_front_up_up)/DEGREE, near_a4,
-        )
+        axis_a4_front_up_up = nearest_period(offset_a4 + degrees(sin_q4_front_up_up, cos_q4_front_up_up), near_a4)
         # A5: its turn
         axis_a5_front_up_up = nearest_period(
-            offset_a5 + atan2(-radius_q4_front_up, -r23_from_q123_front_up)/DEGREE, near_a5,
+            offset_a5 + degrees(-radius_q4_front_up, -r23_from_q123_front_up),
+            near_a5,
         )
         r21_from_q1234_front_up_up = -r21_from_q1_front*cos_q4_front_up_up - r11_from_q123_front_up*sin_q4_front_up_up
         r22_from_q1234_front_up_up = -r22_from_q1_front*cos_q4_front_up_up - r12_from_q123_front_up*sin_q4_front_up_up
         # A6: its turn
         axis_a6_front_up_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up),
+            near_a6,
         )
         # A4: its turn
-        axis_a4_back_up_up = nearest_period(offset_a4 + atan2(sin_q4_back_up_up, cos_q4_back_up_up)/DEGREE, near_a4)
+        axis_a4_back_up_up = nearest_period(offset_a4 + degrees(sin_q4_back_up_up, cos_q4_back_up_up), near_a4)
         # A5: its turn
-        axis_a5_back_up_up = nearest_period(
-            offset_a5 + atan2(-radius_q4_back_up, -r23_from_q123_back_up)/DEGREE, near_a5,
-        )
+        axis_a5_back_up_up = nearest_period(offset_a5 + degrees(-radius_q4_back_up, -r23_from_q123_back_up), near_a5)
         r21_from_q1234_back_up_up = -r21_from_q1_back*cos_q4_back_up_up - r11_from_q123_back_up*sin_q4_back_up_up
         r22_from_q1234_back_up_up = -r22_from_q1_back*cos_q4_back_up_up - r12_from_q123_back_up*sin_q4_back_up_up
         # A6: its turn
         axis_a6_back_up_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up),
+            near_a6,
         )
+        status_front = refused(status, refusal_front)
+        status_back = refused(status, refusal_back)
         return (
             (
                 (
                     axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_down,
                     axis_a5_front_down_down, axis_a6_front_down_down,
                 ),
-                refused(status, refusal_front),
+                status_front,
             ),
             (
                 (
                     axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_down,
                     axis_a5_back_down_down, axis_a6_back_down_down,
                 ),
-                refused(status, refusal_back),
+                status_back,
             ),
             (
                 (
                     axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_down, axis_a5_front_up_down,
                     axis_a6_front_up_down,
                 ),
-                refused(status, refusal_front),
+                status_front,
             ),
             (
                 (
                     axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_down, axis_a5_back_up_down,
                     axis_a6_back_up_down,
                 ),
-                refused(status, refusal_back),
+                status_back,
             ),
             (
                 (
                     axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_up,
                     axis_a5_front_down_up, axis_a6_front_down_up,
                 ),
-                refused(status, refusal_front),
+                status_front,
             ),
             (
                 (
                     axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_up, axis_a5_back_down_up,
                     axis_a6_back_down_up,
                 ),
-                refused(status, refusal_back),
+                status_back,
             ),
             (
                 (
                     axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_up, axis_a5_front_up_up,
                     axis_a6_front_up_up,
                 ),
-                refused(status, refusal_front),
+                status_front,
             ),
             (
                 (
                     axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_up, axis_a5_back_up_up,
                     axis_a6_back_up_up,
                 ),
-                refused(status, refusal_back),
+                status_back,
             ),
         )

@@ -16,14 +16,15 @@ from softkin._array import (
     absolute,
     atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_on_arc,
     nearest_period,
     passed,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -90,7 +91,7 @@ class ArrayPrograms(Programs):
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(status, (absolute(ref_phi) <= 1e9) & (absolute(ref_theta) <= 1e9), Status.BAD_INPUT)
-        radius_theta = root(x*x + y*y)  # theta: direction and distance of a point
+        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
 
         def elsewhere_cos_theta(ref_theta: Real) -> Reals:
             free_theta = (ref_theta - offset_theta)*DEGREE
@@ -106,7 +107,7 @@ class ArrayPrograms(Programs):
             elsewhere_cos_theta,
             (ref_theta,),
         )
-        radius_phi = root(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
 
         def elsewhere_cos_phi(ref_phi: Real) -> Reals:
             free_phi = (ref_phi - offset_phi)*DEGREE
@@ -129,7 +130,7 @@ class ArrayPrograms(Programs):
             select(turn_theta > 0.0, 360.0*turn_theta - 360.0, 360.0*turn_theta),
             open_theta,
         )
-        axis_theta = nearest_period(offset_theta + atan2(sin_theta, cos_theta)/DEGREE, near_theta)  # Theta: its turn
+        axis_theta = nearest_period(offset_theta + degrees(sin_theta, cos_theta), near_theta)  # Theta: its turn
         axis_phi = offset_phi + atan2(sin_phi, cos_phi)/DEGREE
         return (axis_r, axis_theta, axis_phi), status
 

@@ -14,8 +14,8 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
@@ -24,6 +24,7 @@ from softkin._array import (
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -202,7 +203,7 @@ class ArrayPrograms(Programs):
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
-        effective_a1 = root(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
@@ -239,7 +240,7 @@ class ArrayPrograms(Programs):
             (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
             /link_length_2
         )
-        effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*link_length_5, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*link_length_5, effective_a2, 1.0)
@@ -339,14 +340,14 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -396,7 +397,7 @@ class ArrayPrograms(Programs):
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
-        effective_a1 = root(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
@@ -440,7 +441,7 @@ class ArrayPrograms(Programs):
             /link_length_2
         )
         # effective length that the angle turns
-        effective_a2_left = root(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
+        effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
         divisor_a2_left = select(effective_a2_left > 1e-9*link_length_5, effective_a2_left, 1.0)
         swing_scale_a2_left = 2.0*divisor_a2_left*link_length_5  # a2: law of cosines in the rod rear equation
         cos_swing_a2_left = (
@@ -635,7 +636,7 @@ class ArrayPrograms(Programs):
             /link_length_2
         )
         # effective length that the angle turns
-        effective_a2_right = root(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
+        effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
         divisor_a2_right = select(effective_a2_right > 1e-9*link_length_5, effective_a2_right, 1.0)
         swing_scale_a2_right = 2.0*divisor_a2_right*link_length_5  # a2: law of cosines in the rod rear equation
         cos_swing_a2_right = (
@@ -823,7 +824,7 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + degrees(sin_a1_left, cos_a1_left), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -831,19 +832,21 @@ class ArrayPrograms(Programs):
             open_a2,
         )
         # A2: its turn
-        axis_a2_left_left = nearest_period(offset_a2 + atan2(sin_a2_left_left, cos_a2_left_left)/DEGREE, near_a2)
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        axis_a2_left_left = nearest_period(offset_a2 + degrees(sin_a2_left_left, cos_a2_left_left), near_a2)
+        axis_a1_right = nearest_period(offset_a1 + degrees(sin_a1_right, cos_a1_right), near_a1)  # A1: its turn
         # A2: its turn
-        axis_a2_right_left = nearest_period(offset_a2 + atan2(sin_a2_right_left, cos_a2_right_left)/DEGREE, near_a2)
+        axis_a2_right_left = nearest_period(offset_a2 + degrees(sin_a2_right_left, cos_a2_right_left), near_a2)
         # A2: its turn
-        axis_a2_left_right = nearest_period(offset_a2 + atan2(sin_a2_left_right, cos_a2_left_right)/DEGREE, near_a2)
+        axis_a2_left_right = nearest_period(offset_a2 + degrees(sin_a2_left_right, cos_a2_left_right), near_a2)
         # A2: its turn
-        axis_a2_right_right = nearest_period(
-            offset_a2 + atan2(sin_a2_right_right, cos_a2_right_right)/DEGREE, near_a2,
-        )
+        axis_a2_right_right = nearest_period(offset_a2 + degrees(sin_a2_right_right, cos_a2_right_right), near_a2)
+        status_left_left = refused(status, refusal_left_left)
+        status_right_left = refused(status, refusal_right_left)
+        status_left_right = refused(status, refusal_left_right)
+        status_right_right = refused(status, refusal_right_right)
         return (
-            ((axis_a1_left, axis_a2_left_left), refused(status, refusal_left_left)),
-            ((axis_a1_right, axis_a2_right_left), refused(status, refusal_right_left)),
-            ((axis_a1_left, axis_a2_left_right), refused(status, refusal_left_right)),
-            ((axis_a1_right, axis_a2_right_right), refused(status, refusal_right_right)),
+            ((axis_a1_left, axis_a2_left_left), status_left_left),
+            ((axis_a1_right, axis_a2_right_left), status_right_left),
+            ((axis_a1_left, axis_a2_left_right), status_left_right),
+            ((axis_a1_right, axis_a2_right_right), status_right_right),
         )

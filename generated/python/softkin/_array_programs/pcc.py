@@ -15,16 +15,16 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -86,7 +86,7 @@ class ArrayPrograms(Programs):
         require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2_from_a1 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -110,7 +110,7 @@ class ArrayPrograms(Programs):
         across_a1 = arm_along_a1*y - arm_across_a1*x
         length_a1 = select(
             across_a1*across_a1 + along_a1*along_a1 > 0.0,
-            root(across_a1*across_a1 + along_a1*along_a1),
+            sqrt(across_a1*across_a1 + along_a1*along_a1),
             1.0,
         )
         cos_a1 = along_a1/length_a1  # its reference where it is free
@@ -122,7 +122,7 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         cos_a2 = cos_a1*cos_a2_from_a1 - sin_a1*sin_a2_from_a1  # a2: what the sum a2_from_a1 leaves
         sin_a2 = cos_a1*sin_a2_from_a1 + cos_a2_from_a1*sin_a1
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
@@ -131,7 +131,7 @@ class ArrayPrograms(Programs):
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -182,7 +182,7 @@ class ArrayPrograms(Programs):
         require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2_from_a1 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -228,7 +228,7 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + degrees(sin_a1_right, cos_a1_right), near_a1)  # A1: its turn
         # a2: what the sum a2_from_a1 leaves
         cos_a2_right = cos_a1_right*cos_a2_from_a1 - sin_a1_right*sin_a2_from_a1_right
         sin_a2_right = cos_a1_right*sin_a2_from_a1_right + cos_a2_from_a1*sin_a1_right
@@ -238,13 +238,13 @@ class ArrayPrograms(Programs):
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2_right = nearest_period(offset_a2 + atan2(sin_a2_right, cos_a2_right)/DEGREE, near_a2)  # A2: its turn
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
+        axis_a2_right = nearest_period(offset_a2 + degrees(sin_a2_right, cos_a2_right), near_a2)  # A2: its turn
+        axis_a1_left = nearest_period(offset_a1 + degrees(sin_a1_left, cos_a1_left), near_a1)  # A1: its turn
         # a2: what the sum a2_from_a1 leaves
         cos_a2_left = cos_a1_left*cos_a2_from_a1 + sin_a1_left*sin_a2_from_a1_right
         sin_a2_left = cos_a2_from_a1*sin_a1_left - cos_a1_left*sin_a2_from_a1_right
-        axis_a2_left = nearest_period(offset_a2 + atan2(sin_a2_left, cos_a2_left)/DEGREE, near_a2)  # A2: its turn
+        axis_a2_left = nearest_period(offset_a2 + degrees(sin_a2_left, cos_a2_left), near_a2)  # A2: its turn
         return (
-            ((axis_a1_right, axis_a2_right), refused(status, 0.0)),
-            ((axis_a1_left, axis_a2_left), refused(status, 0.0)),
+            ((axis_a1_right, axis_a2_right), status),
+            ((axis_a1_left, axis_a2_left), status),
         )

@@ -14,15 +14,15 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -75,7 +75,7 @@ class ArrayPrograms(Programs):
         require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
-        radius_c = root(x*x + y*y)  # c: direction and distance of a point
+        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
 
         def elsewhere_cos_c(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
@@ -88,7 +88,7 @@ class ArrayPrograms(Programs):
         cos_c, sin_c = elsewhere(radius_c > 1e-11*machine_scale, (cos_c, sin_c), elsewhere_cos_c, (ref_c,))
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
-        axis_c = nearest_period(offset_c + atan2(sin_c, cos_c)/DEGREE, near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + degrees(sin_c, cos_c), near_c)  # C: its turn
         axis_r = offset_r + radius_c
         return (axis_c, axis_r), status
 

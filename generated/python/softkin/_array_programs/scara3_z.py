@@ -15,16 +15,16 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -139,7 +139,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
@@ -147,7 +147,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
@@ -170,7 +170,7 @@ class ArrayPrograms(Programs):
         across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         length_a1 = select(
             across_a1*across_a1 + along_a1*along_a1 > 0.0,
-            root(across_a1*across_a1 + along_a1*along_a1),
+            sqrt(across_a1*across_a1 + along_a1*along_a1),
             1.0,
         )
         cos_a1 = along_a1/length_a1  # its reference where it is free
@@ -182,14 +182,14 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         cos_a12 = cos_a1*cos_a2 - sin_a1*sin_a2
         sin_a12 = cos_a1*sin_a2 + cos_a2*sin_a1
         cos_a3 = cos_a12*cos_heading + sin_a12*sin_heading  # a3: what the sum a123 leaves
@@ -200,7 +200,7 @@ class ArrayPrograms(Programs):
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: its turn
         axis_z = offset_z + z
         return (axis_a1, axis_a2, axis_a3, axis_z), status
 
@@ -287,7 +287,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
@@ -295,7 +295,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
@@ -341,14 +341,14 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + degrees(sin_a1_right, cos_a1_right), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2_right = nearest_period(offset_a2 + atan2(sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2_right = nearest_period(offset_a2 + degrees(sin_a2_right, cos_a2), near_a2)  # A2: its turn
         cos_a12_right = cos_a1_right*cos_a2 - sin_a1_right*sin_a2_right
         sin_a12_right = cos_a1_right*sin_a2_right + cos_a2*sin_a1_right
         cos_a3_right = cos_a12_right*cos_heading + sin_a12_right*sin_heading  # a3: what the sum a123 leaves
@@ -359,16 +359,16 @@ class ArrayPrograms(Programs):
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3_right = nearest_period(offset_a3 + atan2(sin_a3_right, cos_a3_right)/DEGREE, near_a3)  # A3: its turn
+        axis_a3_right = nearest_period(offset_a3 + degrees(sin_a3_right, cos_a3_right), near_a3)  # A3: its turn
         axis_z = offset_z + z
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
-        axis_a2_left = nearest_period(offset_a2 + atan2(-sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a1_left = nearest_period(offset_a1 + degrees(sin_a1_left, cos_a1_left), near_a1)  # A1: its turn
+        axis_a2_left = nearest_period(offset_a2 + degrees(-sin_a2_right, cos_a2), near_a2)  # A2: its turn
         cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
         sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
         cos_a3_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading  # a3: what the sum a123 leaves
         sin_a3_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
-        axis_a3_left = nearest_period(offset_a3 + atan2(sin_a3_left, cos_a3_left)/DEGREE, near_a3)  # A3: its turn
+        axis_a3_left = nearest_period(offset_a3 + degrees(sin_a3_left, cos_a3_left), near_a3)  # A3: its turn
         return (
-            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_z), refused(status, 0.0)),
-            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_z), refused(status, 0.0)),
+            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_z), status),
+            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_z), status),
         )

@@ -15,16 +15,16 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -139,7 +139,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
@@ -147,7 +147,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -170,7 +170,7 @@ class ArrayPrograms(Programs):
         across_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
         length_a2 = select(
             across_a2*across_a2 + along_a2*along_a2 > 0.0,
-            root(across_a2*across_a2 + along_a2*along_a2),
+            sqrt(across_a2*across_a2 + along_a2*along_a2),
             1.0,
         )
         cos_a2 = along_a2/length_a2  # its reference where it is free
@@ -183,14 +183,14 @@ class ArrayPrograms(Programs):
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: its turn
         cos_a23 = cos_a2*cos_a3 - sin_a2*sin_a3
         sin_a23 = cos_a2*sin_a3 + cos_a3*sin_a2
         cos_a4 = cos_a23*cos_heading + sin_a23*sin_heading  # a4: what the sum a234 leaves
@@ -201,7 +201,7 @@ class ArrayPrograms(Programs):
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_a4, cos_a4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = nearest_period(offset_a4 + degrees(sin_a4, cos_a4), near_a4)  # A4: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -287,7 +287,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
@@ -295,7 +295,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -342,14 +342,14 @@ class ArrayPrograms(Programs):
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2_right = nearest_period(offset_a2 + atan2(sin_a2_right, cos_a2_right)/DEGREE, near_a2)  # A2: its turn
+        axis_a2_right = nearest_period(offset_a2 + degrees(sin_a2_right, cos_a2_right), near_a2)  # A2: its turn
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3_right = nearest_period(offset_a3 + atan2(sin_a3_right, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3_right = nearest_period(offset_a3 + degrees(sin_a3_right, cos_a3), near_a3)  # A3: its turn
         cos_a23_right = cos_a2_right*cos_a3 - sin_a2_right*sin_a3_right
         sin_a23_right = cos_a2_right*sin_a3_right + cos_a3*sin_a2_right
         cos_a4_right = cos_a23_right*cos_heading + sin_a23_right*sin_heading  # a4: what the sum a234 leaves
@@ -360,15 +360,15 @@ class ArrayPrograms(Programs):
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4_right = nearest_period(offset_a4 + atan2(sin_a4_right, cos_a4_right)/DEGREE, near_a4)  # A4: its turn
-        axis_a2_left = nearest_period(offset_a2 + atan2(sin_a2_left, cos_a2_left)/DEGREE, near_a2)  # A2: its turn
-        axis_a3_left = nearest_period(offset_a3 + atan2(-sin_a3_right, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a4_right = nearest_period(offset_a4 + degrees(sin_a4_right, cos_a4_right), near_a4)  # A4: its turn
+        axis_a2_left = nearest_period(offset_a2 + degrees(sin_a2_left, cos_a2_left), near_a2)  # A2: its turn
+        axis_a3_left = nearest_period(offset_a3 + degrees(-sin_a3_right, cos_a3), near_a3)  # A3: its turn
         cos_a23_left = cos_a2_left*cos_a3 + sin_a2_left*sin_a3_right
         sin_a23_left = cos_a3*sin_a2_left - cos_a2_left*sin_a3_right
         cos_a4_left = cos_a23_left*cos_heading + sin_a23_left*sin_heading  # a4: what the sum a234 leaves
         sin_a4_left = cos_a23_left*sin_heading - cos_heading*sin_a23_left
-        axis_a4_left = nearest_period(offset_a4 + atan2(sin_a4_left, cos_a4_left)/DEGREE, near_a4)  # A4: its turn
+        axis_a4_left = nearest_period(offset_a4 + degrees(sin_a4_left, cos_a4_left), near_a4)  # A4: its turn
         return (
-            ((axis_a1, axis_a2_right, axis_a3_right, axis_a4_right), refused(status, 0.0)),
-            ((axis_a1, axis_a2_left, axis_a3_left, axis_a4_left), refused(status, 0.0)),
+            ((axis_a1, axis_a2_right, axis_a3_right, axis_a4_right), status),
+            ((axis_a1, axis_a2_left, axis_a3_left, axis_a4_left), status),
         )

@@ -15,16 +15,16 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -153,10 +153,10 @@ class ArrayPrograms(Programs):
         # projection: the tool direction swings to the machine's, the twist is kept
         heading_along = r11 + (1.0 - 2.0*flange_down)*r22
         heading_across = r21 - (1.0 - 2.0*flange_down)*r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -179,7 +179,7 @@ class ArrayPrograms(Programs):
         across_a1 = arm_along_a1*y - arm_across_a1*x
         length_a1 = select(
             across_a1*across_a1 + along_a1*along_a1 > 0.0,
-            root(across_a1*across_a1 + along_a1*along_a1),
+            sqrt(across_a1*across_a1 + along_a1*along_a1),
             1.0,
         )
         cos_a1 = along_a1/length_a1  # its reference where it is free
@@ -191,14 +191,14 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
@@ -213,7 +213,7 @@ class ArrayPrograms(Programs):
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_a4, cos_a4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = nearest_period(offset_a4 + degrees(sin_a4, cos_a4), near_a4)  # A4: its turn
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc/(360.0*DEGREE) - a4*gear_coupling/DEGREE  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3
@@ -305,10 +305,10 @@ class ArrayPrograms(Programs):
         # projection: the tool direction swings to the machine's, the twist is kept
         heading_along = r11 + (1.0 - 2.0*flange_down)*r22
         heading_across = r21 - (1.0 - 2.0*flange_down)*r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -353,14 +353,14 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + degrees(sin_a1_right, cos_a1_right), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2_right = nearest_period(offset_a2 + atan2(sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2_right = nearest_period(offset_a2 + degrees(sin_a2_right, cos_a2), near_a2)  # A2: its turn
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
@@ -375,23 +375,23 @@ class ArrayPrograms(Programs):
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4_right = nearest_period(offset_a4 + atan2(sin_a4_right, cos_a4_right)/DEGREE, near_a4)  # A4: its turn
+        axis_a4_right = nearest_period(offset_a4 + degrees(sin_a4_right, cos_a4_right), near_a4)  # A4: its turn
         a4_right = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
         # a3: affine in the z equation
         a3_right = z + a4_right*pitch_zc/(360.0*DEGREE) - a4_right*gear_coupling/DEGREE
         axis_a3_right = a3_right + offset_a3
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
-        axis_a2_left = nearest_period(offset_a2 + atan2(-sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a1_left = nearest_period(offset_a1 + degrees(sin_a1_left, cos_a1_left), near_a1)  # A1: its turn
+        axis_a2_left = nearest_period(offset_a2 + degrees(-sin_a2_right, cos_a2), near_a2)  # A2: its turn
         cos_a12_left = cos_a1_left*cos_a2 + sin_a1_left*sin_a2_right
         sin_a12_left = cos_a2*sin_a1_left - cos_a1_left*sin_a2_right
         # a4: linear pair in the cosine of the heading and sine of the heading equations
         cos_a4_left = cos_a12_left*cos_heading + sin_a12_left*sin_heading
         sin_a4_left = cos_a12_left*sin_heading - cos_heading*sin_a12_left
-        axis_a4_left = nearest_period(offset_a4 + atan2(sin_a4_left, cos_a4_left)/DEGREE, near_a4)  # A4: its turn
+        axis_a4_left = nearest_period(offset_a4 + degrees(sin_a4_left, cos_a4_left), near_a4)  # A4: its turn
         a4_left = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
         a3_left = z + a4_left*pitch_zc/(360.0*DEGREE) - a4_left*gear_coupling/DEGREE  # a3: affine in the z equation
         axis_a3_left = a3_left + offset_a3
         return (
-            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right), refused(status, 0.0)),
-            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_a4_left), refused(status, 0.0)),
+            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right), status),
+            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_a4_left), status),
         )

@@ -15,16 +15,16 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -141,7 +141,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none
@@ -151,7 +151,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -174,7 +174,7 @@ class ArrayPrograms(Programs):
         across_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         length_a1 = select(
             across_a1*across_a1 + along_a1*along_a1 > 0.0,
-            root(across_a1*across_a1 + along_a1*along_a1),
+            sqrt(across_a1*across_a1 + along_a1*along_a1),
             1.0,
         )
         cos_a1 = along_a1/length_a1  # its reference where it is free
@@ -186,7 +186,7 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
 
         def elsewhere_near_a2(motor_a1: Real, ref_a1: Real, ref_a2: Real) -> Reals:
@@ -201,7 +201,7 @@ class ArrayPrograms(Programs):
         near_a2 = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
         (near_a2,) = elsewhere(absolute(turn_a2) > 0.0, (near_a2,), elsewhere_near_a2, (motor_a1, ref_a1, ref_a2))
         # A2: its turn
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE - coupling_12*motor_a1/DEGREE, near_a2)
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2) - coupling_12*motor_a1/DEGREE, near_a2)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
 
         def elsewhere_near_a3(motor_a1: Real, motor_a2: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real) -> Reals:
@@ -231,7 +231,7 @@ class ArrayPrograms(Programs):
         sin_a3 = cos_a12*sin_heading - cos_heading*sin_a12
         # A3: its turn
         axis_a3 = nearest_period(
-            offset_a3 + atan2(sin_a3, cos_a3)/DEGREE - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE, near_a3,
+            offset_a3 + degrees(sin_a3, cos_a3) - (coupling_13*motor_a1 + coupling_23*motor_a2)/DEGREE, near_a3,
         )
         return (axis_a1, axis_a2, axis_a3), status
 
@@ -337,7 +337,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none
@@ -347,7 +347,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -393,9 +393,9 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + degrees(sin_a1_right, cos_a1_right), near_a1)  # A1: its turn
         motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + degrees(sin_a1_left, cos_a1_left), near_a1)  # A1: its turn
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
 
         def elsewhere_near_a2_right(motor_a1_left: Real, motor_a1_right: Real, ref_a1: Real, ref_a2: Real) -> Reals:
@@ -424,12 +424,12 @@ class ArrayPrograms(Programs):
         )
         # A2: its turn
         axis_a2_right = nearest_period(
-            offset_a2 + atan2(sin_a2_right, cos_a2)/DEGREE - coupling_12*motor_a1_right/DEGREE, near_a2_right,
+            offset_a2 + degrees(sin_a2_right, cos_a2) - coupling_12*motor_a1_right/DEGREE, near_a2_right,
         )
         motor_a2_right = DEGREE*(axis_a2_right - offset_a2)
         # A2: its turn
         axis_a2_left = nearest_period(
-            offset_a2 + atan2(-sin_a2_right, cos_a2)/DEGREE - coupling_12*motor_a1_left/DEGREE, near_a2_left,
+            offset_a2 + degrees(-sin_a2_right, cos_a2) - coupling_12*motor_a1_left/DEGREE, near_a2_left,
         )
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
 
@@ -470,7 +470,7 @@ class ArrayPrograms(Programs):
         # A3: its turn
         axis_a3_right = nearest_period(
             (
-                offset_a3 + atan2(sin_a3_right, cos_a3_right)/DEGREE
+                offset_a3 + degrees(sin_a3_right, cos_a3_right)
                 - (coupling_13*motor_a1_right + coupling_23*motor_a2_right)/DEGREE
             ),
             near_a3_right,
@@ -482,12 +482,12 @@ class ArrayPrograms(Programs):
         # A3: its turn
         axis_a3_left = nearest_period(
             (
-                offset_a3 + atan2(sin_a3_left, cos_a3_left)/DEGREE
+                offset_a3 + degrees(sin_a3_left, cos_a3_left)
                 - (coupling_13*motor_a1_left + coupling_23*motor_a2_left)/DEGREE
             ),
             near_a3_left,
         )
         return (
-            ((axis_a1_right, axis_a2_right, axis_a3_right), refused(status, 0.0)),
-            ((axis_a1_left, axis_a2_left, axis_a3_left), refused(status, 0.0)),
+            ((axis_a1_right, axis_a2_right, axis_a3_right), status),
+            ((axis_a1_left, axis_a2_left, axis_a3_left), status),
         )

@@ -15,16 +15,15 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -122,7 +121,7 @@ class ArrayPrograms(OrientationPrograms):
         )
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
 
         def elsewhere_cos_a(ref_a: Real) -> Reals:
             free_a = (ref_a - offset_a)*DEGREE
@@ -137,11 +136,11 @@ class ArrayPrograms(OrientationPrograms):
         cos_a, sin_a = elsewhere(radius_a > 1e-11, (cos_a, sin_a), elsewhere_cos_a, (ref_a,))
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        axis_a = nearest_period(offset_a + atan2(sin_a, cos_a)/DEGREE, near_a)  # A: its turn
+        axis_a = nearest_period(offset_a + degrees(sin_a, cos_a), near_a)  # A: its turn
         a_radius_of_b = radius_a*sigma_roll
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
-        axis_b = nearest_period(offset_b + atan2(a_radius_of_b, r33)/DEGREE, near_b)  # B: its turn
+        axis_b = nearest_period(offset_b + degrees(a_radius_of_b, r33), near_b)  # B: its turn
         return (axis_a, axis_b), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -261,7 +260,7 @@ class ArrayPrograms(OrientationPrograms):
         )
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
 
         def elsewhere_cos_a_positive(ref_a: Real) -> Reals:
             free_a = (ref_a - offset_a)*DEGREE
@@ -283,15 +282,13 @@ class ArrayPrograms(OrientationPrograms):
         )
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        # A: its turn
-        axis_a_positive = nearest_period(offset_a + atan2(sin_a_positive, cos_a_positive)/DEGREE, near_a)
+        axis_a_positive = nearest_period(offset_a + degrees(sin_a_positive, cos_a_positive), near_a)  # A: its turn
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
-        axis_b_positive = nearest_period(offset_b + atan2(radius_a, r33)/DEGREE, near_b)  # B: its turn
-        # A: its turn
-        axis_a_negative = nearest_period(offset_a + atan2(sin_a_negative, cos_a_negative)/DEGREE, near_a)
-        axis_b_negative = nearest_period(offset_b + atan2(-radius_a, r33)/DEGREE, near_b)  # B: its turn
+        axis_b_positive = nearest_period(offset_b + degrees(radius_a, r33), near_b)  # B: its turn
+        axis_a_negative = nearest_period(offset_a + degrees(sin_a_negative, cos_a_negative), near_a)  # A: its turn
+        axis_b_negative = nearest_period(offset_b + degrees(-radius_a, r33), near_b)  # B: its turn
         return (
-            ((axis_a_positive, axis_b_positive), refused(status, 0.0)),
-            ((axis_a_negative, axis_b_negative), refused(status, 0.0)),
+            ((axis_a_positive, axis_b_positive), status),
+            ((axis_a_negative, axis_b_negative), status),
         )

@@ -15,16 +15,15 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -138,7 +137,7 @@ class ArrayPrograms(OrientationPrograms):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
-        radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
+        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
 
         def elsewhere_cos_c(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
@@ -156,14 +155,14 @@ class ArrayPrograms(OrientationPrograms):
         sin_a = -r12_before_c
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        axis_a = nearest_period(offset_a + atan2(sin_a, r22_before_c)/DEGREE, near_a)  # A: its turn
+        axis_a = nearest_period(offset_a + degrees(sin_a, r22_before_c), near_a)  # A: its turn
         c_radius_of_b = radius_c*sigma_hand
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
-        axis_b = nearest_period(offset_b + atan2(c_radius_of_b, r33)/DEGREE, near_b)  # B: its turn
+        axis_b = nearest_period(offset_b + degrees(c_radius_of_b, r33), near_b)  # B: its turn
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
-        axis_c = nearest_period(offset_c + atan2(sin_c, cos_c)/DEGREE, near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + degrees(sin_c, cos_c), near_c)  # C: its turn
         return (axis_a, axis_b, axis_c), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -279,7 +278,7 @@ class ArrayPrograms(OrientationPrograms):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
-        radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
+        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
 
         def elsewhere_cos_c_down(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
@@ -303,20 +302,19 @@ class ArrayPrograms(OrientationPrograms):
         r12_before_c_down = r12*cos_c_down + r11*sin_c_down
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        # A: its turn
-        axis_a_down = nearest_period(offset_a + atan2(-r12_before_c_down, r22_before_c_down)/DEGREE, near_a)
+        axis_a_down = nearest_period(offset_a + degrees(-r12_before_c_down, r22_before_c_down), near_a)  # A: its turn
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
-        axis_b_down = nearest_period(offset_b + atan2(radius_c, r33)/DEGREE, near_b)  # B: its turn
+        axis_b_down = nearest_period(offset_b + degrees(radius_c, r33), near_b)  # B: its turn
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
-        axis_c_down = nearest_period(offset_c + atan2(sin_c_down, cos_c_down)/DEGREE, near_c)  # C: its turn
+        axis_c_down = nearest_period(offset_c + degrees(sin_c_down, cos_c_down), near_c)  # C: its turn
         r22_before_c_up = r22*cos_c_up + r21*sin_c_up
         r12_before_c_up = r12*cos_c_up + r11*sin_c_up
-        axis_a_up = nearest_period(offset_a + atan2(-r12_before_c_up, r22_before_c_up)/DEGREE, near_a)  # A: its turn
-        axis_b_up = nearest_period(offset_b + atan2(-radius_c, r33)/DEGREE, near_b)  # B: its turn
-        axis_c_up = nearest_period(offset_c + atan2(sin_c_up, cos_c_up)/DEGREE, near_c)  # C: its turn
+        axis_a_up = nearest_period(offset_a + degrees(-r12_before_c_up, r22_before_c_up), near_a)  # A: its turn
+        axis_b_up = nearest_period(offset_b + degrees(-radius_c, r33), near_b)  # B: its turn
+        axis_c_up = nearest_period(offset_c + degrees(sin_c_up, cos_c_up), near_c)  # C: its turn
         return (
-            ((axis_a_down, axis_b_down, axis_c_down), refused(status, 0.0)),
-            ((axis_a_up, axis_b_up, axis_c_up), refused(status, 0.0)),
+            ((axis_a_down, axis_b_down, axis_c_down), status),
+            ((axis_a_up, axis_b_up, axis_c_up), status),
         )
