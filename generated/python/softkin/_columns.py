@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from softkin._array import Array, Real, Reals, Rotation, Vector
 from softkin._configuration import AUTOMATIC, COINCIDE, FIRST, SECOND
-from softkin._table import numbers, whole_numbers
+from softkin._table import numbers
 from softkin._types import Configuration, KinematicsError, Status
 
 if TYPE_CHECKING:
