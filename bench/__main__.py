@@ -56,7 +56,7 @@ def report(table: Table) -> None:
     columns = f"{'worst':>9}{'answers':>8}{'lost':>5}{'wrong':>6}"
     print(f"{'':52}{'µs a pose':>10}{'ratio':>7}{columns}{columns}")
     for task in (ALL, ONE, BATCH):
-        peers = [times[c.name] for c in found if not c.is_ours and c.task == (ALL if task == ONE else task)]
+        peers = [times[c.name] for c in found if c.is_peer and c.task == (ALL if task == ONE else task)]
         print(f"{task}; ratio to the fastest peer" + (" with all solutions" if task == ONE else ""))
         for contender in (c for c in found if c.task == task):
             took = times[contender.name]
@@ -102,7 +102,7 @@ def _answer(contender: Contender, one: Any) -> Any:
     """What a call answers; None where it refuses."""
     try:
         return contender.call(*one) if contender.task == ONE else contender.call(one)
-    except softkin.KinematicsError:
+    except (softkin.KinematicsError, ZeroDivisionError):
         return None
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ import softkin
 from eaik.IK_DH import DhRobot
 from scipy.spatial.transform import RigidTransform
 
+from bench.by_hand import Arm, all_solutions, batch, one_solution
 from bench.chain import KR6_R900, UR5, Array, Table
 
 Answers = tuple[Array, Array]
@@ -35,7 +37,7 @@ class Contender:
     inputs: Callable[[Array], Any]
     call: Callable[..., Any]
     answers: Callable[[Any], Answers]
-    is_ours: bool = False
+    is_peer: bool = False
 
 
 def contenders(table: Table) -> list[Contender]:
@@ -83,13 +85,13 @@ def _ours(table: Table) -> list[Contender]:
         return _rows([[s.axes for s in slots if s.axes is not None] for slots in solutions])
 
     return [
-        Contender("softkin branches(frame)", ALL, frames, robot.branches, _slots, True),
-        Contender("softkin inverse_all(frame), checked", ALL, frames, robot.inverse_all, looked_at, True),
-        Contender("softkin tuple(inverse_all(frame))", ALL, frames, lambda f: tuple(robot.inverse_all(f)), looked_at, True),
-        Contender("softkin branch(frame, signs)", ONE, chosen, robot.branch, _single, True),
-        Contender("softkin inverse(frame, configuration), checked", ONE, named, robot.inverse, _single, True),
-        Contender("softkin inverse_batch, one solution", BATCH, configured, lambda p: robot.inverse_batch(*p), _batch, True),
-        Contender("softkin inverse_all_batch, all solutions", BATCH, arrays, lambda p: robot.inverse_all_batch(*p), every, True),
+        Contender("softkin branches(frame)", ALL, frames, robot.branches, _slots),
+        Contender("softkin inverse_all(frame), checked", ALL, frames, robot.inverse_all, looked_at),
+        Contender("softkin tuple(inverse_all(frame))", ALL, frames, lambda f: tuple(robot.inverse_all(f)), looked_at),
+        Contender("softkin branch(frame, signs)", ONE, chosen, robot.branch, _single),
+        Contender("softkin inverse(frame, configuration), checked", ONE, named, robot.inverse, _single),
+        Contender("softkin inverse_batch, one solution", BATCH, configured, lambda p: robot.inverse_batch(*p), _batch),
+        Contender("softkin inverse_all_batch, all solutions", BATCH, arrays, lambda p: robot.inverse_all_batch(*p), every),
     ]
 
 
@@ -103,9 +105,9 @@ def _eaik(table: Table) -> list[Contender]:
         return np.degrees(axes) - table.zero, pose
 
     return [
-        Contender("eaik IK(pose)", ALL, list, robot.IK, answers),
-        Contender("eaik IK(pose).Q", ALL, list, lambda pose: _read(robot.IK(pose)), answers),
-        Contender("eaik IK_batched, all solutions", BATCH, np.ascontiguousarray, robot.IK_batched, answers),
+        Contender("eaik IK(pose)", ALL, list, robot.IK, answers, True),
+        Contender("eaik IK(pose).Q", ALL, list, lambda pose: _read(robot.IK(pose)), answers, True),
+        Contender("eaik IK_batched, all solutions", BATCH, np.ascontiguousarray, robot.IK_batched, answers, True),
     ]
 
 
@@ -135,8 +137,39 @@ def _opw(table: Table) -> list[Contender]:
 
     together, one = RigidTransform.from_matrix, "py-opw-kinematics batch_inverse, one solution"
     return [
-        Contender("py-opw-kinematics inverse(pose)", ALL, transforms, robot.inverse, every),
-        Contender(one, BATCH, together, robot.batch_inverse, nearest),
+        Contender("py-opw-kinematics inverse(pose)", ALL, transforms, robot.inverse, every, True),
+        Contender(one, BATCH, together, robot.batch_inverse, nearest, True),
+        *_by_hand(Arm(a1=a[0], a2=-a[2], c1=d[0], c2=a[1], c3=d[3], c4=d[5]), axes),
+    ]
+
+
+def _by_hand(arm: Arm, axes: Callable[[Array], Array]) -> list[Contender]:
+    """The same formulas as py-opw-kinematics has, in Python and NumPy, with the same zero pose."""
+    every = all_solutions(arm)
+
+    def frames(poses: Array) -> list[Any]:
+        return list(zip(_tuples(poses[:, :3, 3]), _tuples(poses[:, :3, :3]), strict=True))
+
+    def chosen(poses: Array) -> list[Any]:
+        """Frames with the first branch that reaches them: arm, then elbow, then wrist."""
+        signs = list(product((1.0, -1.0), repeat=3))
+        return [(f, next(s for s, found in zip(signs, every(f), strict=True) if found is not None)) for f in frames(poses)]
+
+    def rows(poses: Array) -> tuple[Array, Array, Array]:
+        positions, rotations = np.ascontiguousarray(poses[:, :3, 3]), np.ascontiguousarray(poses[:, :3, :3]).reshape(-1, 9)
+        return positions, rotations, np.array([signs for _, signs in chosen(poses)])
+
+    def turned(answers: Answers) -> Answers:
+        return axes(answers[0]), answers[1]
+
+    def solved(found: Array) -> Answers:
+        row = np.flatnonzero(~np.isnan(found).any(axis=1))
+        return axes(found[row]), row
+
+    return [
+        Contender("by hand, without singular poses", ALL, frames, every, lambda a: turned(_slots(a))),
+        Contender("by hand, without singular poses, one solution", ONE, chosen, one_solution(arm), lambda a: turned(_single(a))),
+        Contender("by hand in NumPy, one solution", BATCH, rows, batch(arm), solved),
     ]
 
 

@@ -23,12 +23,15 @@ from derive.program import DEGREE, Atan2, Let, Program, Select, Statement, reads
 from derive.turnless import turnless
 
 _Values = Mapping[sp.Symbol, sp.Expr]
+_Signs = Mapping[sp.Symbol, frozenset[sp.Symbol]]
+"""By name: the branch signs that it depends on."""
 
 
 def angles_first(program: Program, constants: frozenset[str]) -> Program:
     """The program with sums of angles before their sines and cosines, where nothing else reads those of the angles."""
-    values = {let.name: let.value for let in program.lets()}
-    angles = {pair: a for pair in _turnless_directions(program) for a in [_angle(pair, values, constants)] if a is not None}
+    values, signs = {let.name: let.value for let in program.lets()}, _signs(program)
+    candidates = {pair: _angle(pair, values, constants, signs) for pair in _turnless_directions(program)}
+    angles = {pair: angle for pair, angle in candidates.items() if angle is not None}
     sums = {s.pair: s for s in _sums(values, angles)}
     while True:
         wanted = {pair: {name for s in sums.values() if pair in s.parts for name in s.pair} for pair in angles}
@@ -64,22 +67,22 @@ def _name_of(pair: Pair) -> sp.Symbol:
     return real(f"angle_{pair[1].name.removeprefix('cos_').removeprefix('direction_x_')}")
 
 
-def _angle(pair: Pair, values: _Values, constants: frozenset[str]) -> sp.Expr | None:
+def _angle(pair: Pair, values: _Values, constants: frozenset[str], signs: _Signs) -> sp.Expr | None:
     """The angle of a direction that is another one turned: where a condition holds, or always."""
     sine, cosine = (values.get(name, name) for name in pair)
     if not (isinstance(sine, Select) and isinstance(cosine, Select)):
-        return _turned(sine, cosine, values, constants)
+        return _turned(sine, cosine, constants, signs)
     (condition, across, sine_else), (same, along, cosine_else) = sine.args, cosine.args
     if condition != same or not isinstance(sine_else, sp.sin) or cosine_else != sp.cos(sine_else.args[0]):
         return None
     across, along = (sp.Mul(*[f for f in sp.Mul.make_args(v) if f.as_base_exp()[1] > 0]) for v in (across, along))
-    first = _turned(values.get(across, across), values.get(along, along), values, constants)
+    first = _turned(values.get(across, across), values.get(along, along), constants, signs)
     return None if first is None else Select(condition, first, sine_else.args[0])
 
 
-def _turned(sine: sp.Expr, cosine: sp.Expr, values: _Values, constants: frozenset[str]) -> sp.Expr | None:
+def _turned(sine: sp.Expr, cosine: sp.Expr, constants: frozenset[str], signs: _Signs) -> sp.Expr | None:
     """The angle of one direction turned by another, or by an angle of the machine."""
-    found = sorted(products(sine, cosine), key=lambda product: sum(_is_flipped(p, values) for _, p in product[1:]))
+    found = sorted(products(sine, cosine), key=lambda product: sum(_is_flipped(p, signs) for _, p in product[1:]))
     for is_opposite, (sense1, first), (sense2, second) in found:
         return sense1 * Atan2(*first) + sense2 * Atan2(*second) + (180 * DEGREE if is_opposite else 0)
     moving = sorted((s for s in symbols_of(cosine) if s.name not in constants), key=str)
@@ -90,17 +93,18 @@ def _turned(sine: sp.Expr, cosine: sp.Expr, values: _Values, constants: frozense
     return None
 
 
-def _is_flipped(pair: Pair, values: _Values) -> bool:
+def _is_flipped(pair: Pair, signs: _Signs) -> bool:
     """Whether a branch mirrors a direction at its second axis: its angle is then not just the negative."""
-    sine, cosine = (_signs(name, values) for name in pair)
+    sine, cosine = (signs.get(name, frozenset()) for name in pair)
     return not cosine <= sine
 
 
-def _signs(name: sp.Symbol, values: _Values) -> frozenset[sp.Symbol]:
-    """The branch signs that a name depends on."""
-    if name.name.startswith("sigma_"):
-        return frozenset({name})
-    return frozenset().union(*(_signs(s, values) for s in symbols_of(values[name]))) if name in values else frozenset()
+def _signs(program: Program) -> _Signs:
+    """The branch signs that every name depends on."""
+    found = {s: frozenset({s}) for s in program.inputs if s.name.startswith("sigma_")}
+    for let in program.lets():
+        found[let.name] = frozenset[sp.Symbol]().union(*(found.get(s, frozenset()) for s in symbols_of(let.value)))
+    return found
 
 
 def _sums(values: _Values, angles: Mapping[Pair, sp.Expr]) -> list[_Sum]:

@@ -27,7 +27,13 @@ from derive.program import (
     symbols_of,
 )
 
-_WORDS = {FREE_ANGLE: "free_angle", ROUNDING: "rounding", SHORTEST_LINK: "shortest_link", PLANE: "plane"}
+_WORDS = {
+    FREE_ANGLE: "free_angle",
+    FREE_ANGLE**2: "free_angle_squared",
+    ROUNDING: "rounding",
+    SHORTEST_LINK: "shortest_link",
+    PLANE: "plane",
+}
 _READABLE = re.compile(r"(?=.{1,40}$)[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 
 

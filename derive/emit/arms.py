@@ -45,8 +45,6 @@ class Arms:
     holds: tuple[Item, ...]
     fails: tuple[Item, ...]
     names: tuple[sp.Symbol, ...]
-    flat: tuple[Let, ...]
-    """The same without arms: what is computed where some rows are on one side and some on the other."""
 
 
 Item = Statement | Arms
@@ -54,12 +52,15 @@ Item = Statement | Arms
 
 def in_arms(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
     """The statements of a program, choices that share a condition gathered with what they alone need."""
+    return _sunk(_in_arms(body, wanted), {s for value in wanted for s in _symbols(value)})
+
+
+def spared(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
+    """Without what is bound on a first side for the second sides of later choices that the same condition decides.
+
+    It serves a language that runs one side alone: a choice then binds its names on the other side only.
+    """
     later = {s for value in wanted for s in _symbols(value)}
-    return _spared(_sunk(_in_arms(body, wanted), later), later)
-
-
-def _spared(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:
-    """Without what is bound on a first side for the second sides of later choices that the same condition decides."""
     found: list[Item] = []
     for place, item in enumerate(items):
         if isinstance(item, Arms):
@@ -102,7 +103,7 @@ def _with(arms: Arms, let: Let) -> Arms:
     """The choice with a statement in front of its second side, if that reads it."""
     if not any(let.name in _reads_somewhere(item) for item in arms.fails):
         return arms
-    return replace(arms, fails=(let, *arms.fails), flat=(let, *arms.flat))
+    return replace(arms, fails=(let, *arms.fails))
 
 
 def _reads_somewhere(item: Item) -> set[sp.Symbol]:
@@ -257,13 +258,12 @@ class _Choice:
         gathered = self.gathered
         needed_outside = {s for place, let in enumerate(lets) if place not in gathered for s in _symbols(let.value)}
         results = tuple(lets[place].name for place in sorted(self.members) if lets[place].name in later | needed_outside)
-        flat = tuple(lets[place] for place in sorted(gathered))
-        arms = Arms(self.condition, self._arm(0, results), self._arm(1, results), results, flat)
+        arms = Arms(self.condition, self._arm(0, results), self._arm(1, results), results)
         first = self.stretch.upstream(gathered | self._deciders()) - gathered
         first |= set(range(min(self.members))) - gathered - self.stretch.downstream(gathered)  # what was first stays first
         after = [let for place, let in enumerate(lets) if place not in gathered and place not in first]
         read_after = later.union(*(_symbols(let.value) for let in after))
-        read_inside = _symbols(self.condition).union(*(_symbols(let.value) for let in flat))
+        read_inside = _symbols(self.condition).union(*(_symbols(lets[place].value) for place in gathered))
         before = [lets[place] for place in sorted(first)]
         return [*_gathered(before, read_after | read_inside), arms, *_gathered(after, later)]
 

@@ -28,6 +28,7 @@ _FIXED = (
     "softkin/_array_coupled.py",
     "softkin/_array_programs/__init__.py",
     "softkin/_batch.py",
+    "softkin/_columns.py",
     "softkin/_configuration.py",
     "softkin/_core.py",
     "softkin/_coupled.py",
@@ -54,6 +55,8 @@ _EXPORTS = (
     "Parameter", "Singularity", "Solution", "Status", "catalogue",
 )  # fmt: skip
 _ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Vector", "passed", "require")
+_ARRAY_HELPERS = ("Real", "atan2", "degrees", "elsewhere", "refused", "root", "sqrt")
+"""What programs on arrays call or name, depending on how an expression is spelled."""
 _CHUNK = 8192
 """Rows of a batch at a time: 64 KiB an array."""
 _MEANINGS = {
@@ -136,7 +139,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         every = array_method(kin)
         array_methods.append({"head": _every_head(every), "summary": every.summary, "body": array_lines(kin, every)})
         arrays.append(every)
-    helpers = array_helpers_in((line for m in array_methods for line in m["body"]), ("everywhere", "refused"))
+    helpers = array_helpers_in((line for m in array_methods for line in m["body"]), _ARRAY_HELPERS)
     array_context = {
         **names,
         "array_programs": array_programs,
@@ -163,7 +166,7 @@ def _array_programs(kin: Kinematics) -> str:
 
 
 def _array_functions(arrays: Sequence[Method]) -> set[str]:
-    return {ARRAY_NAMES.get(f, f) for f in functions(tuple(m.program for m in arrays))}
+    return {ARRAY_NAMES.get(f, f) for f in functions(tuple(m.program for m in arrays))} - set(_ARRAY_HELPERS)
 
 
 def _bases(kin: Kinematics) -> dict[str, str]:
@@ -180,7 +183,8 @@ def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
     kinds = {m.kind for m in used if m.kind} | {a.kind for m in used for a in m.arguments}
     lean = {"Frame", "Reals", "Rotation", "Vector"} if can_be_unrolled(kin) else set()
     lean |= {"ConfigurationByte"} if kin.configuration_size else set()
-    return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Axis", "Diagnosis", "Parameter", "Reals", "Status"} | lean)
+    lean |= {"Axis"} if kin.mechanism.joints else set()
+    return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Diagnosis", "Parameter", "Reals", "Status"} | lean)
 
 
 def _head(method: Method, prefix: str) -> list[str]:

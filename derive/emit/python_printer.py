@@ -9,12 +9,12 @@ from keyword import iskeyword
 import sympy as sp
 
 from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, PRODUCT, ExpressionPrinter
-from derive.program import DEGREE, Root, Select
+from derive.program import DEGREE, Atan2, Root, Select
 
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
-    "given", "found", "frame", "arctan2", "sqrt", "everywhere", "refused",
+    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "refused",
 }  # fmt: skip
 """Names that a generated method uses for itself."""
 ARRAY_NAMES = {"abs": "absolute"}
@@ -107,6 +107,12 @@ class ArrayPrinter(ScalarPrinter):
     """Arrays: a choice evaluates both arms, and conditions are masks."""
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, Root) and is_sum_of_squares(node.args[0]):
+            return f"sqrt({self.print(node.args[0])})", ATOM
+        if self.modulo_turns and node.is_Mul and len(node.args) == 2 and 1 / DEGREE in node.args:
+            (angle,) = (factor for factor in node.args if factor != 1 / DEGREE)
+            if isinstance(angle, Atan2):
+                return f"degrees({', '.join(map(self.print, angle.args))})", ATOM
         return ExpressionPrinter._spell(self, node)
 
     def call(self, key: str, arguments: Sequence[str]) -> str:

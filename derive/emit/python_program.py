@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 import sympy as sp
 from sympy.core.relational import Relational
 
 from derive.emit import python_calls
-from derive.emit.arms import Arms, Item, in_arms
+from derive.emit.arms import Arms, Item, in_arms, spared
 from derive.emit.expression import FUNCTION_KEYS
+from derive.emit.python_arms import array_arm_lines, fixed
 from derive.emit.python_layout import WIDTH, fold, taken_apart
 from derive.emit.python_loops import array_end, array_head, scalar_end, scalar_head, solve_lines
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, literal, spelled
@@ -28,6 +29,7 @@ from derive.program import (
     Solve,
     Status,
     expressions,
+    real,
     symbols_of,
 )
 
@@ -35,7 +37,7 @@ Shape = str | tuple["Shape", ...]
 """Names, nested as the tuples of the method's arguments and results are."""
 
 _SCALAR, _ARRAY = ScalarPrinter(), ArrayPrinter()
-_MODULO_TURNS = ScalarPrinter(modulo_turns=True)
+_MODULO_TURNS, _ARRAY_TURNS = ScalarPrinter(modulo_turns=True), ArrayPrinter(modulo_turns=True)
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,8 @@ def scalar_body(method: Method, owner: str = "self._constants", refusals: Refusa
 def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
     """The statements of a program on plain numbers."""
     needed = [e for s in program.body if isinstance(s, Require) for e in refusals.reads(s)]
-    return item_lines(in_arms(program.body, [*(o.value for o in program.outputs), *needed]), refusals, printer)
+    wanted = [*(o.value for o in program.outputs), *needed]
+    return item_lines(spared(in_arms(program.body, wanted), wanted), refusals, printer)
 
 
 def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
@@ -117,12 +120,19 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
 def _item_lines(item: Item, printer: ScalarPrinter) -> list[str]:
     """A binding, or a choice between two sides that bind the same."""
     if isinstance(item, Arms):
-        head = fold(f"if {conjunction([item.condition])}:")
-        return [*head, *_side(item.holds, printer), "else:", *_side(item.fails, printer)]
+        notes = dict.fromkeys(i.note for i in item.holds if isinstance(i, Let) and i.name in item.names and i.note)
+        head = [*(f"# {note}" for note in notes), *fold(f"if {conjunction([item.condition])}:")]
+        sides = [[_unnoted(i, item.names) for i in side] for side in (item.holds, item.fails)]
+        return [*head, *_side(sides[0], printer), "else:", *_side(sides[1], printer)]
     if isinstance(item, Let) and isinstance(item.value, NearestPeriod):
         return _turn_lines(item, item.value, printer)
     assert isinstance(item, Let | Solve)
     return binding_lines(item, printer)
+
+
+def _unnoted(item: Item, names: Sequence[sp.Symbol]) -> Item:
+    """The statement without its note, if that stands before the choice that gives it."""
+    return replace(item, note="") if isinstance(item, Let) and item.name in names else item
 
 
 def _side(items: Sequence[Item], printer: ScalarPrinter) -> list[str]:
@@ -157,6 +167,7 @@ def array_statements(method: Method) -> list[str]:
         first = method.arguments[0]
         lines.append(f"status = passed({first.name}{'[0]' if first.kind == 'Rotation' else ''})")
     program = method.program
+    constants = fixed(program.body, {real(name) for name in constants_of(method)})
     for item, same in grouped(in_arms(program.body, [o.value for o in program.outputs])):
         if isinstance(item, Iterate):
             lines += [*array_head(item, _ARRAY), *_step(item, _ARRAY), *array_end(item, _ARRAY)]
@@ -167,18 +178,17 @@ def array_statements(method: Method) -> list[str]:
             for condition in (r.condition for r in same):
                 lines += fold(f"require(status, {_ARRAY.print(condition)}, Status.{item.otherwise.name})")
         else:
-            lines += _array_item_lines(item)
+            lines += _array_item_lines(item, constants)
     return lines
 
 
-def _array_item_lines(item: Item) -> list[str]:
-    """A binding, or a choice: where all rows are on its first side, nothing of the other is computed."""
+def _array_item_lines(item: Item, constants: Collection[sp.Symbol]) -> list[str]:
+    """A binding, or a choice."""
     if isinstance(item, Arms):
-        holds = [f"    {line}" for inner in item.holds for line in _array_item_lines(inner)]
-        flat = [f"    {line}" for let in item.flat for line in let_lines(let, _ARRAY)]
-        return [*fold(f"if everywhere({_ARRAY.print(item.condition)}):"), *holds, "else:", *flat]
+        return array_arm_lines(item, constants, lambda inner: _array_item_lines(inner, constants), _ARRAY)
     assert isinstance(item, Let | Solve)
-    return binding_lines(item, _ARRAY)
+    is_turn = isinstance(item, Let) and isinstance(item.value, NearestPeriod)
+    return binding_lines(item, _ARRAY_TURNS if is_turn else _ARRAY)
 
 
 def functions(programs: Sequence[Program]) -> list[str]:

@@ -10,7 +10,7 @@ import sympy as sp
 from derive.angles_first import angles_first
 from derive.common_parts import common_parts
 from derive.constant_parts import constant_parts
-from derive.emit.arms import in_arms
+from derive.emit.arms import in_arms, spared
 from derive.emit.python_layout import fold
 from derive.emit.python_methods import POSITION, ROTATION, branch
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, primitives_in, spelled
@@ -29,6 +29,7 @@ from derive.emit.reused_names import reused_names
 from derive.kinematics import Kinematics
 from derive.opposites import without_minus
 from derive.program import Let, Program, Status, real, symbols_of
+from derive.squared import without_roots
 from derive.twins import with_twins
 from derive.unroll import REFUSAL, Sign, choices, is_straight, principal, specialised, suffixed, unroll, with_limits
 
@@ -89,18 +90,21 @@ def array_method(kin: Kinematics) -> Method:
 def array_lines(kin: Kinematics, method: Method) -> list[str]:
     """Its body."""
     values = {o.name: _ARRAY.print(o.value) for o in method.program.outputs}
-    lines = [*array_statements(method), "return ("]
-    for choice in choices(len(kin.branches)):
-        refusal = values[suffixed(REFUSAL, signs(kin), choice)]
+    lines = array_statements(method)
+    refusals = [values[suffixed(REFUSAL, signs(kin), choice)] for choice in choices(len(kin.branches))]
+    statuses = {refusal: f"status{refusal.removeprefix(REFUSAL)}" if refusal != "0.0" else "status" for refusal in refusals}
+    lines += [f"{status} = refused(status, {refusal})" for refusal, status in statuses.items() if status != "status"]
+    lines.append("return (")
+    for choice, refusal in zip(choices(len(kin.branches)), refusals, strict=True):
         axes = _tuple([values[suffixed(j.axis.name, signs(kin), choice)] for j in kin.mechanism.joints])
-        lines += fold(f"({axes}, refused(status, {refusal})),", 4)
+        lines += fold(f"({axes}, {statuses[refusal]}),", 4)
     return [*lines, ")"]
 
 
 def _nearest(kin: Kinematics, program: Program) -> Program:
     """No turn is commanded; on plain numbers a sine costs little."""
     given = specialised(program, {j.turn: sp.Integer(0) for j in kin.period_joints})
-    return without_minus(angles_first(given, _constants(kin)))
+    return without_roots(without_minus(angles_first(given, _constants(kin))))
 
 
 def _constants(kin: Kinematics) -> frozenset[str]:
@@ -166,7 +170,7 @@ def _every(
 ) -> list[str]:
     """Statements one branch after the other, and all slots."""
     wanted = [o.value for o in program.outputs]
-    items, names = reused_names(in_arms(program.body, wanted), wanted, signs(kin))
+    items, names = reused_names(spared(in_arms(program.body, wanted), wanted), wanted, signs(kin))
     values = {o.name: o.value.xreplace(dict(names)) for o in program.outputs}
     return [*item_lines(items, refusals, printer), *_returned(kin, values, refused)]
 

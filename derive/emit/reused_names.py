@@ -16,7 +16,7 @@ import sympy as sp
 
 from derive.emit.arms import Arms, Item
 from derive.passes import renamed
-from derive.program import Let, binds, expressions, reads, real, rewritten, symbols_of
+from derive.program import binds, expressions, reads, real, rewritten, symbols_of
 from derive.unroll import Sign, without_words
 
 
@@ -67,7 +67,7 @@ def _with_last_words(name: sp.Symbol, signs: Sequence[Sign], kept: int) -> sp.Sy
 def _bound(item: Item) -> Iterator[sp.Symbol]:
     """The names that a statement binds, wherever in it."""
     if isinstance(item, Arms):
-        for inner in (*item.holds, *item.fails, *item.flat):
+        for inner in (*item.holds, *item.fails):
             yield from _bound(inner)
     else:
         yield from binds(item)
@@ -75,15 +75,14 @@ def _bound(item: Item) -> Iterator[sp.Symbol]:
 
 def _read(item: Item) -> set[sp.Symbol]:
     if isinstance(item, Arms):
-        return symbols_of(item.condition).union(*map(_read, (*item.holds, *item.fails, *item.flat)))
+        return symbols_of(item.condition).union(*map(_read, (*item.holds, *item.fails)))
     return {s for e in expressions(item) for s in symbols_of(e)} | reads(item)
 
 
 def _renamed(item: Item, names: Mapping[sp.Symbol, sp.Symbol]) -> Item:
     if isinstance(item, Arms):
         sides = {side: tuple(_renamed(i, names) for i in getattr(item, side)) for side in ("holds", "fails")}
-        flat = tuple(i for i in (_renamed(i, names) for i in item.flat) if isinstance(i, Let))
         called = tuple(names.get(n, n) for n in item.names)
-        return replace(item, condition=item.condition.xreplace(dict(names)), names=called, flat=flat, **sides)
+        return replace(item, condition=item.condition.xreplace(dict(names)), names=called, **sides)
     changed = rewritten(item, lambda e: e.xreplace(dict(names)))
     return renamed(changed, lambda n: names.get(n, n))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from derive.common_parts import common_parts
-from derive.emit.arms import Arms, in_arms
+from derive.emit.arms import Arms, in_arms, spared
 from derive.emit.reused_names import reused_names
 from derive.passes import assemble
 from derive.program import Let, Output, Program, Root, Select, Statement, real
@@ -116,7 +116,7 @@ def test_what_only_later_second_sides_read_is_not_bound_on_the_first() -> None:
         Let(B, Select(regular, A + 1, Root(Q))),
         Let(C, Select(regular, A + 2, Root(Q) + Q)),
     ]
-    first, _, second = in_arms(body, [A, B, C])
+    first, _, second = spared(in_arms(body, [A, B, C]), [A, B, C])
     assert isinstance(first, Arms) and isinstance(second, Arms)
     assert [let.name for let in first.holds if isinstance(let, Let)] == [P]
     assert {let.name for let in first.fails if isinstance(let, Let)} == {P, Q}

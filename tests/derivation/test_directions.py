@@ -9,8 +9,9 @@ from derive.angles_first import angles_first
 from derive.directions import plain_directions
 from derive.opposites import without_minus
 from derive.passes import assemble
-from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Require, Root, Select, Status, real
+from derive.program import DEGREE, FREE_ANGLE, Atan2, Let, NearestPeriod, Output, Program, Require, Root, Select, Status, real
 from derive.shorter import shorter
+from derive.squared import without_roots
 from derive.turnless import turnless
 from tests.derivation.test_twins import same, values
 
@@ -205,3 +206,27 @@ def test_the_opposite_direction_is_half_a_turn_away() -> None:
     same(program, without_minus(program))
     read = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1, S1))
     assert without_minus(read) == read
+
+
+def test_a_length_that_is_squared_or_compared_has_no_root() -> None:
+    reach = real("reach")
+    scaled = Let(R, (reach - A) * (reach + A) * (B - reach) * (B + reach) / E**2)
+    bent = Let(T, (reach**2 - A) / E)
+    chosen = Let(U, Select(sp.Gt(reach, A * FREE_ANGLE), T, X))
+    program = of(Let(reach, Root(X**2 + Y**2), "how far"), scaled, bent, chosen, outputs=(R, U))
+    found = without_roots(program)
+    square = real("reach_squared")
+    assert values(found)["reach_squared"] == X**2 + Y**2 and "reach" not in values(found)
+    assert sp.expand(values(found)["r"] - (square - A**2) * (B**2 - square) / E**2) == 0
+    assert len(values(found)["r"].atoms(sp.Symbol)) == 4
+    assert values(found)["u"] == Select(sp.Gt(square, (A * FREE_ANGLE) ** 2), T, X)
+    assert [let.note for let in found.lets() if let.name == square] == ["how far"]
+    same(program, found)
+
+
+@pytest.mark.parametrize(
+    "read", [L + X, X / L, Root(L), (L - A) * X, Select(sp.Gt(L, X), X, Y), Select(sp.Gt(L, A), X, Y)], ids=str
+)
+def test_what_else_is_made_of_a_length_keeps_the_root(read: sp.Expr) -> None:
+    program = of(Let(L, Root(X**2 + Y**2)), Let(R, read), outputs=(R,))
+    assert without_roots(program) == program

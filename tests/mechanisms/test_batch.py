@@ -49,6 +49,24 @@ def test_mixed_rows_are_the_scalar_calls(machines: tuple[Machine, ...]) -> None:
         assert {int(Status.OK), int(Status.BAD_INPUT)} <= set(statuses.tolist())
 
 
+def test_a_row_that_is_refused_leaves_the_others_alone(machines: tuple[Machine, ...]) -> None:
+    """Named branches and commanded turns that differ from row to row; then garbage in every fourth row."""
+    for number, machine in enumerate(machines):
+        rng = np.random.default_rng(number)
+        axes = machine.draw(48, rng)
+        positions, rotations, configurations, _ = machine.robot.forward_batch(axes)
+        named = configurations.astype(int)
+        named[:, : machine.robot.BRANCHES] = rng.integers(1, 3, (48, machine.robot.BRANCHES))
+        before, statuses = machine.robot.inverse_batch(positions, rotations, named, axes)
+        spoiled = np.arange(48) % 4 == 3
+        positions[spoiled] = [np.nan, 0.0, np.inf]
+        named[spoiled & (rng.random(48) < 0.5)] = 300
+        after, found = machine.robot.inverse_batch(positions, rotations, named, axes)
+        assert (found[spoiled] == Status.BAD_INPUT).all() and np.isnan(after[spoiled]).all()
+        assert (found[~spoiled] == statuses[~spoiled]).all()
+        assert np.array_equal(after[~spoiled], before[~spoiled], equal_nan=True)
+
+
 def test_a_batch_is_its_parts(machines: tuple[Machine, ...]) -> None:
     """Longer than a chunk, and bit for bit what each row gives alone."""
     for machine in machines[1:2]:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from softkin._batch import _periods
+from softkin._columns import configurations
 from softkin._configuration import branch_byte, period, slots
 from softkin._input import bytes_of, reals, rotation_by_rows
-from softkin._table import numbers, signed_bytes
+from softkin._table import numbers, whole_numbers
 from softkin._types import KinematicsError, Status
 
 
@@ -48,7 +50,9 @@ def test_branch_bytes() -> None:
 def test_bytes_are_signed(byte: int) -> None:
     expected = byte - 256 if byte > 127 else byte
     assert bytes_of([byte, 1], 2) == (expected, 1)
-    assert signed_bytes([[byte, 1]], 1, 2).tolist() == [[expected, 1]]
+    robot = SimpleNamespace(_branch_bytes=[1], _period_bytes=[0])
+    chosen = configurations(robot, np.array([[byte, 1]]))  # type: ignore[arg-type]
+    assert chosen.turns == (expected,) and chosen.are_bytes.all() and chosen.are_named.all()
 
 
 NO_NUMBERS = ("123", b"\0" * 24, (1, 2), (1, 2, 3, 4), (1, 2, "3"), (1, 2, None), 7, (1, 2, 1j), (10**400, 0, 0))
@@ -91,4 +95,4 @@ def test_rows_of_arrays() -> None:
     with pytest.raises(KinematicsError):
         numbers(np.zeros((4, 3)), 5, (3,), "references")
     with pytest.raises(KinematicsError):
-        signed_bytes([[1.0, 0.0]], 1, 2)
+        whole_numbers([[1.0, 0.0]], 1, 2, "configurations")

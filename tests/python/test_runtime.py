@@ -96,3 +96,33 @@ def test_a_row_keeps_its_first_failure_and_nan_is_one() -> None:
     _array.require(status, values <= 2.0, Status.UNREACHABLE)
     _array.require(status, values <= 0.5, Status.IMPOSSIBLE)
     assert list(status) == [Status.OK, Status.IMPOSSIBLE, Status.UNREACHABLE, Status.UNREACHABLE]
+
+
+def test_elsewhere_computes_in_the_other_rows_alone() -> None:
+    values, asked = np.array([1.0, 2.0, 3.0]), []
+
+    def other(given: np.ndarray, number: float) -> tuple[np.ndarray, float]:
+        asked.append((given, number))
+        return given + number, 7.0
+
+    found = _array.elsewhere(values < 1.5, (values, 5.0), other, (values, 10.0))
+    assert [list(v) for v in found] == [[1.0, 12.0, 13.0], [5.0, 7.0, 7.0]]
+    assert list(asked[0][0]) == [2.0, 3.0] and list(values) == [1.0, 2.0, 3.0]
+    assert _array.elsewhere(values > 0.0, (values, 5.0), other, (values, 10.0))[0] is values and len(asked) == 1
+    assert _array.elsewhere(False, (1.0, 5.0), other, (2.0, 10.0)) == (12.0, 7.0)  # type: ignore[arg-type]
+
+
+def test_a_choice_that_all_rows_share_copies_nothing() -> None:
+    values = np.array([1.0, 2.0])
+    assert _array.select(values > 0.0, values, 7.0) is values
+    assert _array.select(False, values, 7.0) == 7.0
+    assert _array.nearest_period(values, 0.0) is values
+    assert list(_array.nearest_period(np.array([1.0, math.nan, 361.0]), 0.0))[::2] == [1.0, 1.0]
+
+
+def test_statuses_of_a_slot() -> None:
+    status = np.array([0, 2, 0], np.uint8)
+    assert _array.refused(status, 0.0) is status
+    assert list(_array.refused(status, 3.0)) == [3, 2, 3]
+    assert list(_array.refused(status, np.array([3.0, 3.0, 0.0]))) == [3, 2, 0]
+    assert list(_array.refused(np.zeros(3, np.uint8), 3.0)) == [3, 3, 3]

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -15,8 +15,8 @@ from softkin._types import Status
 
 __all__ = [
     "DEGREE", "Array", "Codes", "OrientationPrograms", "Programs", "Real", "Reals", "Rotation", "Vector",
-    "StartedPrograms", "absolute", "advanced", "atan2", "cos", "everywhere", "initial", "nearest_on_arc", "nearest_period", "passed",
-    "refused", "require", "root", "select", "settled", "sin", "solve",
+    "StartedPrograms", "Truth", "absolute", "advanced", "atan2", "cos", "degrees", "elsewhere", "initial", "nearest_on_arc", "nearest_period", "passed",
+    "refused", "require", "root", "select", "settled", "sin", "solve", "sqrt",
 ]  # fmt: skip
 
 Array: TypeAlias = NDArray[np.float64]
@@ -76,24 +76,46 @@ class OrientationPrograms(Programs):
 
 
 def passed(values: tuple[Real, ...]) -> Codes:
-    """The statuses of rows before any condition: all OK. One for all rows where there are no values."""
-    return np.zeros(np.shape(values[0]) if values else (), np.uint8)
+    """The statuses of rows before any condition: all OK. One for all rows where all values are."""
+    return np.zeros(next((v.shape for v in values if isinstance(v, np.ndarray)), ()), np.uint8)
 
 
 def require(status: Codes, condition: Truth, otherwise: Status) -> None:
     """Give the rows where the condition does not hold their status, unless they have one already."""
+    if everywhere(condition):
+        return
     status[np.logical_not(condition) & (status == Status.OK)] = otherwise
 
 
 def everywhere(condition: Truth) -> bool:
     """Whether a condition holds in all rows."""
-    return bool(np.all(condition))
+    return bool(condition.all()) if isinstance(condition, np.ndarray) else bool(condition)
+
+
+def elsewhere(condition: Truth, values: Reals, other: Callable[..., Reals], given: Reals) -> Reals:
+    """The values where a condition holds; in the other rows, what `other` makes of what is given there."""
+    if everywhere(condition):
+        return values
+    if not isinstance(condition, np.ndarray):
+        return other(*given)
+    rows = np.flatnonzero(~condition)
+    found = other(*[value[rows] if isinstance(value, np.ndarray) else value for value in given])
+    return tuple([_replaced(value, rows, new, condition.shape) for value, new in zip(values, found, strict=True)])
+
+
+def _replaced(value: Real, rows: NDArray[np.intp], new: Real, shape: tuple[int, ...]) -> Array:
+    """The values with new ones in some rows."""
+    whole = np.array(np.broadcast_to(value, shape))
+    whole[rows] = new
+    return whole
 
 
 def refused(status: Codes, refusal: Real) -> Codes:
     """The statuses of a slot: those of all slots, else its own, which come as numbers."""
-    codes: Codes = np.where(status == Status.OK, refusal, status).astype(np.uint8)
-    return codes
+    if not isinstance(refusal, np.ndarray) and refusal == 0.0:
+        return status
+    codes = np.asarray(refusal).astype(np.uint8)
+    return np.where(status == Status.OK, codes, status) if status.any() else np.broadcast_to(codes, status.shape)
 
 
 def initial(*values: Real) -> Reals:
@@ -135,19 +157,38 @@ def root(x: Real) -> Real:
     return length
 
 
+def sqrt(x: Real) -> Real:
+    """The square root of what is no negative number."""
+    length: Array = np.sqrt(x)
+    return length
+
+
 def atan2(y: Real, x: Real) -> Real:
     """The angle of (x, y) in radians, in (-pi, pi]; 0 for (0, 0). Zeros have no sign."""
     angle: Array = np.arctan2(y + 0.0, x + 0.0)
     return angle
 
 
+def degrees(y: Real, x: Real) -> Real:
+    """The angle of (x, y) in degrees, modulo turns: -180 is as good as 180. 0 for (0, 0)."""
+    angle: Array = np.arctan2(y, x + 0.0)
+    angle /= DEGREE
+    return angle
+
+
 def select(condition: Truth, first: Real, second: Real) -> Real:
-    """The first where the condition holds, else the second."""
-    return np.where(condition, first, second)
+    """The first where the condition holds, else the second. Nothing is put together where it holds in all rows."""
+    if everywhere(condition):
+        return first
+    return np.where(condition, first, second) if isinstance(condition, np.ndarray) else second
 
 
 def nearest_period(value: Real, centre: Real) -> Real:
     """value + 360 k in [centre - 180, centre + 180), in degrees; the interval is shifted down by 1e-9."""
+    if isinstance(value, np.ndarray) and not isinstance(centre, np.ndarray):
+        # Nearly always all are there already; the least and the greatest tell.
+        if value.min() - centre + _HALF_AND_EDGE >= 0.0 and value.max() - centre + _HALF_AND_EDGE < 360.0:
+            return value
     turns: Array = np.floor((value - centre + _HALF_AND_EDGE) / 360.0)
     return value - 360.0 * turns
 

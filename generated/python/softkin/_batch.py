@@ -9,30 +9,27 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from softkin._array import Array, Codes, Programs, Real, Reals, Rotation, StartedPrograms, Vector
+from softkin._array import Array, Codes, Programs, Real, Reals, Rotation, StartedPrograms, Truth, Vector, select
+from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
 from softkin._configuration import AUTOMATIC, COINCIDE, COINCIDENT, EDGE, FIRST, SECOND, TIE, slots
-from softkin._table import numbers, signed_bytes
-from softkin._types import Configuration, KinematicsError, Status
+from softkin._table import numbers, whole_numbers
+from softkin._types import Status
 
 if TYPE_CHECKING:
     from softkin._core import Mechanism
 
 CHUNK = 8192
 """Rows at a time."""
-_IDENTITY: Rotation = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _UNTRIED = 255
 """Stands in the statuses for rows that no slot was tried for."""
 
-Bytes: TypeAlias = NDArray[np.int8]
-Integers: TypeAlias = NDArray[np.int64]
-_Rows: TypeAlias = slice | NDArray[np.intp]
-_Poses: TypeAlias = tuple[tuple[Vector, Rotation, Reals], Codes]
+_Forward: TypeAlias = tuple[tuple[Vector, Rotation, Reals], Codes]
 
 
 def forward(robot: Mechanism, programs: Programs, axes: ArrayLike) -> tuple[Array, Array, Bytes, Codes]:
     """Forward kinematics of every row."""
     values = numbers(axes, None, (len(robot.AXES),), "axes")
-    return _poses(robot, values, lambda rows: programs.forward(_columns(values[rows])))
+    return _poses(robot, values, lambda rows: programs.forward(columns(values[rows])))
 
 
 def forward_from(
@@ -43,15 +40,15 @@ def forward_from(
     places = numbers(start[0], len(values), (3,), "start positions")
     turns = numbers(start[1], len(values), (3, 3), "start rotations")
 
-    def from_start(rows: slice) -> _Poses:
-        x, y, z = _columns(places[rows])
-        a, b, c, d, e, f, g, h, i = _columns(turns[rows].reshape(-1, 9))
-        return programs.forward_from(_columns(values[rows]), (x, y, z), ((a, b, c), (d, e, f), (g, h, i)))
+    def from_start(rows: slice) -> _Forward:
+        x, y, z = columns(places[rows])
+        a, b, c, d, e, f, g, h, i = columns(turns[rows].reshape(-1, 9))
+        return programs.forward_from(columns(values[rows]), (x, y, z), ((a, b, c), (d, e, f), (g, h, i)))
 
     return _poses(robot, values, from_start)
 
 
-def _poses(robot: Mechanism, values: Array, program: Callable[[slice], _Poses]) -> tuple[Array, Array, Bytes, Codes]:
+def _poses(robot: Mechanism, values: Array, program: Callable[[slice], _Forward]) -> tuple[Array, Array, Bytes, Codes]:
     count = len(values)
     positions, rotations = np.empty((count, 3)), np.empty((count, 3, 3))
     configurations = np.zeros((count, len(robot.CONFIGURATION)), np.int8)
@@ -78,25 +75,20 @@ def inverse(
     programs: Programs,
     positions: ArrayLike,
     rotations: ArrayLike | None,
-    configurations: ArrayLike | None,
+    bytes_: ArrayLike | None,
     references: ArrayLike | None,
 ) -> tuple[Array, Codes]:
     """Inverse kinematics of every row."""
-    points = numbers(positions, None, (3,), "positions")
-    count, width = len(points), len(robot.AXES)
-    codes, are_bytes = _configurations(robot, configurations, count)
-    near = numbers(np.zeros(width) if references is None else references, count, (width,), "references")
-    branches = codes[:, robot._branch_bytes]
-    parts = [points, near, codes[:, robot._period_bytes].astype(np.float64)]
-    parts += _cells(robot, rotations, count)
-    axes, statuses = np.empty((count, width)), np.empty(count, np.uint8)
-    for rows in _chunks(count):
-        table = np.ascontiguousarray(np.concatenate([part[rows] for part in parts], axis=1).T)
+    table = Table(robot, positions, rotations, references)
+    given = robot.DEFAULT_CONFIGURATION if bytes_ is None else bytes_
+    codes = whole_numbers(given, table.count, len(robot.CONFIGURATION), "configurations")
+    axes, statuses = np.empty((table.count, len(robot.AXES))), np.empty(table.count, np.uint8)
+    for rows in _chunks(table.count):
+        poses, chosen = table.at(rows), configurations(robot, codes[rows])
         with np.errstate(all="ignore"):
-            found, status = _nearest(robot, programs, table, branches[rows], are_bytes[rows])
-            if robot.checks_limits:
-                status = np.where(status == Status.OK, programs.limits(tuple(found)), status)
-        _write(axes[rows], tuple(found), status != Status.OK)
+            found, status = _chosen(robot, programs, poses, chosen)
+            status = _limited(robot, programs, found, status)
+        _write(axes[rows], found, status != Status.OK)
         statuses[rows] = status
     return axes, statuses
 
@@ -109,108 +101,87 @@ def inverse_all(
     references: ArrayLike | None,
 ) -> tuple[Array, Codes]:
     """Every slot of every row."""
-    points = numbers(positions, None, (3,), "positions")
-    signs = [s for _, s in slots((AUTOMATIC,) * robot.BRANCHES)]
-    count, width = len(points), len(robot.AXES)
-    near = numbers(np.zeros(width) if references is None else references, count, (width,), "references")
-    parts = [points, near, np.zeros((count, len(robot.PERIOD_AXES))), *_cells(robot, rotations, count)]
-    axes, statuses = np.empty((count, len(signs), width)), np.empty((count, len(signs)), np.uint8)
-    for rows in _chunks(count):
-        table = np.ascontiguousarray(np.concatenate([part[rows] for part in parts], axis=1).T)
+    table = Table(robot, positions, rotations, references)
+    every, turns = slots((AUTOMATIC,) * robot.BRANCHES), (0.0,) * len(robot.PERIOD_AXES)
+    width, signs = len(robot.AXES), [s for _, s in every]
+    axes, statuses = np.empty((table.count, len(every), width)), np.empty((table.count, len(every)), np.uint8)
+    # Columns whose distance is no power of two: such columns displace each other from the cache when they become rows.
+    columns_of_slots = np.empty((len(every), width, min(table.count, CHUNK) + 8))
+    for rows in _chunks(table.count):
+        poses = table.at(rows)
+        cells = columns_of_slots[:, :, : poses.count]
         with np.errstate(all="ignore"):
-            for slot, (found, status) in enumerate(programs.every_branch(*_inputs(robot, table), signs)):
-                if robot.checks_limits:
-                    status = np.where(status == Status.OK, programs.limits(found), status)
-                _write(axes[rows, slot], found, status != Status.OK)
-                statuses[rows, slot] = status
+            for slot, (found, status) in enumerate(
+                programs.every_branch(poses.position, poses.rotation, turns, poses.reference, signs)
+            ):
+                statuses[rows, slot] = _limited(robot, programs, found, status)
+                for i, value in enumerate(found):
+                    cells[slot, i] = value
+        axes[rows] = cells.transpose(2, 0, 1)
+        axes[rows][statuses[rows] != Status.OK] = np.nan
     return axes, statuses
 
 
-def _cells(robot: Mechanism, rotations: ArrayLike | None, count: int) -> list[Array]:
-    """The rotations by rows, if they are read."""
-    if not robot.READS_ROTATION:
-        return []
-    if rotations is None:
-        raise KinematicsError(Status.BAD_INPUT, f"{robot.NAME}: rotations are needed: this mechanism reads them")
-    return [numbers(rotations, count, (3, 3), "rotations").reshape(count, 9)]
+def _limited(robot: Mechanism, programs: Programs, axes: Reals, status: Codes) -> Codes:
+    """The statuses with those of the limits, where they are tested."""
+    if not robot.checks_limits:
+        return status
+    limits = programs.limits(axes)
+    return np.where(status == Status.OK, limits, status) if limits.any() else status
 
 
-def _nearest(
-    robot: Mechanism, programs: Programs, table: Array, branches: Integers, are_bytes: NDArray[np.bool_]
-) -> tuple[Array, Codes]:
+def _chosen(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configurations) -> tuple[Reals, Codes]:
     """The axes of every row on its slot, or on the nearest of those that its bytes leave open."""
-    best = _Best(robot, len(branches), are_bytes)
-    is_open = np.any((branches == AUTOMATIC) | (branches == COINCIDE), axis=1)
+    named = chosen.are_named
+    if named.all():
+        return _named(robot, programs, poses, chosen)
+    axes, status = np.full((len(robot.AXES), poses.count), np.nan), np.full(poses.count, Status.BAD_INPUT, np.uint8)
+    for mask, solve in ((named, _named), (chosen.are_bytes & ~named, _nearest)):
+        if mask.any():
+            rows: Rows = slice(None) if mask.all() else np.flatnonzero(mask)
+            found, outcome = solve(robot, programs, poses.at(rows, len(status[rows])), chosen.at(rows))
+            status[rows] = outcome
+            for i, value in enumerate(found):
+                axes[i, rows] = value
+    return tuple(axes), status
+
+
+def _named(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configurations) -> tuple[Reals, Codes]:
+    """Every row on its slot: the signs of the branches differ from row to row."""
+    return programs.branch(poses.position, poses.rotation, chosen.signs, chosen.turns, poses.reference)
+
+
+def _nearest(robot: Mechanism, programs: Programs, poses: Poses, chosen: Configurations) -> tuple[Reals, Codes]:
+    """Every row on the nearest of the slots that its bytes leave open."""
     every = slots((AUTOMATIC,) * robot.BRANCHES)
-    rows = _rows(are_bytes & is_open)
-    inputs = _inputs(robot, table[:, rows])
-    if inputs[0][0].size:
-        tried = programs.every_branch(*inputs, [signs for _, signs in every])
-        for (slot, _), (axes, outcome) in zip(every, tried, strict=True):
-            best.take(rows, axes, outcome, inputs[3], _may_be(branches[rows], slot))
-    for slot, signs in every:
-        rows = _rows(are_bytes & ~is_open & _may_be(branches, slot))
-        position, rotation, turns, reference = _inputs(robot, table[:, rows])
-        if position[0].size:
-            axes, outcome = programs.branch(position, rotation, signs, turns, reference)
-            best.take(rows, axes, outcome, reference, np.ones(len(outcome), np.bool_))
-    return best.axes, best.status
+    signs = [s for _, s in every]
+    tried = programs.every_branch(poses.position, poses.rotation, chosen.turns, poses.reference, signs)
+    best = _Best(robot, poses)
+    for (slot, _), (axes, outcome) in zip(every, tried, strict=True):
+        best.take(axes, outcome, chosen.allow(slot))
+    return tuple(best.axes), best.status
 
 
 class _Best:
     """The axes of every row on the nearest slot so far, and its status: that of its first slot where there are none."""
 
-    def __init__(self, robot: Mechanism, count: int, are_bytes: NDArray[np.bool_]) -> None:
-        self.counted = robot.DISTANCE_AXES
-        self.axes = np.full((len(robot.AXES), count), np.nan)
-        self.status = np.where(are_bytes, _UNTRIED, Status.BAD_INPUT).astype(np.uint8)
-        self.least = np.full(count, np.inf)
+    def __init__(self, robot: Mechanism, poses: Poses) -> None:
+        self.near = [(i, poses.reference[i]) for i in robot.DISTANCE_AXES]
+        self.are_numbers: Truth = True
+        for _, value in self.near:
+            self.are_numbers = self.are_numbers & (np.abs(value) <= 1e9)
+        self.axes: list[Real] = [np.nan for _ in robot.AXES]
+        self.status = np.full(poses.count, _UNTRIED, np.uint8)
+        self.least = np.full(poses.count, np.inf)
 
-    def take(
-        self, rows: _Rows, axes: Reals, outcome: Codes, reference: tuple[Array, ...], may_be: NDArray[np.bool_]
-    ) -> None:
-        """Try a slot for some rows, of which it may be that of `may_be`."""
-        distance = sum(((axes[i] - reference[i]) ** 2 for i in self.counted), np.zeros(len(outcome)))
-        is_number = np.logical_and.reduce([np.abs(reference[i]) <= 1e9 for i in self.counted])
-        distance = np.where(is_number, distance, 0.0)
-        status = self.status[rows]
-        is_better = may_be & (outcome == Status.OK) & ((status != Status.OK) | (distance < self.least[rows] - TIE))
-        self.status[rows] = np.where(is_better | (may_be & (status == _UNTRIED)), outcome, status)
-        self.least[rows] = np.where(is_better, distance, self.least[rows])
-        for i, value in enumerate(axes):
-            self.axes[i, rows] = np.where(is_better, value, self.axes[i, rows])
-
-
-def _inputs(robot: Mechanism, table: Array) -> tuple[tuple[Array, Array, Array], Rotation, Reals, tuple[Array, ...]]:
-    """The rows of a table as a program reads them: position, rotation, turns, reference."""
-    x, y, z, *rest = table
-    width, periods = len(robot.AXES), len(robot.PERIOD_AXES)
-    reference, turns, cells = rest[:width], rest[width : width + periods], rest[width + periods :]
-    rotation = _IDENTITY
-    if robot.READS_ROTATION:
-        a, b, c, d, e, f, g, h, i = cells
-        rotation = ((a, b, c), (d, e, f), (g, h, i))
-    return (x, y, z), rotation, tuple(turns), tuple(reference)
-
-
-def _configurations(robot: Mechanism, given: ArrayLike | None, count: int) -> tuple[Integers, NDArray[np.bool_]]:
-    """The signed bytes of every row, and whether they are bytes of a configuration."""
-    codes = signed_bytes(robot.DEFAULT_CONFIGURATION if given is None else given, count, len(robot.CONFIGURATION))
-    branches = codes[:, robot._branch_bytes]
-    in_range = np.all((codes >= -128) & (codes <= 127), axis=1)
-    return codes, in_range & np.all((branches >= AUTOMATIC) & (branches <= COINCIDE), axis=1)
-
-
-def _may_be(branches: Integers, slot: Configuration) -> NDArray[np.bool_]:
-    """Which rows leave a slot open, or name it."""
-    is_open = (branches == AUTOMATIC) | (branches == COINCIDE)
-    chosen: NDArray[np.bool_] = np.all(is_open | (branches == np.array(slot, np.int64)), axis=1)
-    return chosen
-
-
-def _rows(chosen: NDArray[np.bool_]) -> _Rows:
-    """Chosen rows as an index; all of them as a slice, which copies nothing."""
-    return slice(None) if chosen.all() else np.flatnonzero(chosen)
+    def take(self, axes: Reals, outcome: Codes, allowed: Mask) -> None:
+        """Try a slot for the rows that allow it."""
+        distance = sum(((axes[i] - value) ** 2 for i, value in self.near), np.zeros(len(outcome)))
+        distance = select(self.are_numbers, distance, 0.0)
+        is_better = allowed & (outcome == Status.OK) & ((self.status != Status.OK) | (distance < self.least - TIE))
+        self.status = np.where(is_better | (allowed & (self.status == _UNTRIED)), outcome, self.status)
+        self.least = np.where(is_better, distance, self.least)
+        self.axes = [np.where(is_better, new, old) for new, old in zip(axes, self.axes, strict=True)]
 
 
 def _branch_bytes(measure: Real) -> NDArray[np.int64]:
@@ -223,15 +194,12 @@ def _periods(axis: Array) -> Array:
     return np.where(np.abs(number) <= 127.0, number, 0.0)
 
 
-def _write(target: Array, values: tuple[Real, ...], failed: NDArray[np.bool_]) -> None:
+def _write(target: Array, values: tuple[Real, ...], failed: Mask) -> None:
     """Fill the columns of a table, and NaN where a row failed."""
     for i, value in enumerate(values):
         target[:, i] = value
-    target[failed] = np.nan
-
-
-def _columns(values: Array) -> tuple[Array, ...]:
-    return tuple(np.ascontiguousarray(values.T))
+    if failed.any():
+        target[failed] = np.nan
 
 
 def _chunks(count: int) -> Iterator[slice]:

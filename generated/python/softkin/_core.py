@@ -20,7 +20,7 @@ from softkin._configuration import (
     slots,
     squared_distance,
 )
-from softkin._input import bytes_of, parameter_value, position_of, reals, rotation_of, unusable
+from softkin._input import bytes_of, parameter_value, pose_of, position_of, reals, unusable
 from softkin._solutions import Solutions
 from softkin._types import (
     Axis,
@@ -313,7 +313,7 @@ class Mechanism(ABC):
 
     def _pose(self, frame: FrameLike) -> tuple[Vector, Rotation]:
         """Position and rotation; a rotation that nobody reads is not looked at."""
-        return position_of(frame), rotation_of(frame) if self.READS_ROTATION else _IDENTITY
+        return pose_of(frame) if self.READS_ROTATION else (position_of(frame), _IDENTITY)
 
     def _near(self, reference: Numbers | None) -> Reals:
         count = len(self.AXES)
@@ -349,7 +349,10 @@ class Mechanism(ABC):
 
     def _choose(self, program: _OneBranch, branches: Configuration, near: Reals) -> Reals | Status:
         """The axes on the slot that the branch bytes name, or on the nearest of those that they leave open."""
-        found = [program(signs) for _, signs in slots(branches)]
+        named = slots(branches)
+        if len(named) == 1:
+            return program(named[0][1])
+        found = [program(signs) for _, signs in named]
         answers = [axes for axes in found if not isinstance(axes, Status)]
         if not answers:
             return found[0]

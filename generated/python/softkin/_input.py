@@ -24,6 +24,24 @@ def reals(values: Numbers, count: int, what: str) -> tuple[float, ...]:
     return found
 
 
+def pose_of(frame: FrameLike) -> tuple[Vector, Rotation]:
+    """Position and rotation of a frame; tuples of plain floats are not read number by number."""
+    position, rows = _halves(frame)
+    if type(position) is tuple and type(rows) is tuple and len(position) == len(rows) == 3:
+        first, second, third = rows
+        if (
+            type(first) is tuple and type(second) is tuple and type(third) is tuple
+            and len(first) == len(second) == len(third) == 3
+        ):
+            (x, y, z), (a, b, c), (d, e, f), (g, h, i) = position, first, second, third
+            if (
+                type(x) is type(y) is type(z) is type(a) is type(b) is type(c) is float
+                and type(d) is type(e) is type(f) is type(g) is type(h) is type(i) is float
+            ):
+                return (x, y, z), ((a, b, c), (d, e, f), (g, h, i))
+    return position_of(frame), rotation_of(frame)
+
+
 def position_of(frame: FrameLike) -> Vector:
     """The position of a frame."""
     position, _ = _halves(frame)
@@ -49,6 +67,13 @@ def rotation_by_rows(rows: Iterable[Numbers]) -> Rotation:
 
 def bytes_of(configuration: Iterable[int], count: int) -> tuple[int, ...]:
     """That many signed bytes; 128 to 255 are the negative ones."""
+    if type(configuration) is tuple and len(configuration) == count:
+        try:
+            plain = bytes(configuration)
+        except (TypeError, ValueError):
+            plain = b"\x80"  # negative bytes, and what is none
+        if plain.isascii():
+            return tuple(plain)
     try:
         found = tuple(array("h", iter(configuration)))
     except (TypeError, OverflowError) as error:

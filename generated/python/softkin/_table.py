@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from softkin._types import KinematicsError, Status
+
+_Number = TypeVar("_Number", np.float64, np.int64)
 
 
 def numbers(values: ArrayLike, count: int | None, row: tuple[int, ...], what: str) -> NDArray[np.float64]:
@@ -14,16 +18,15 @@ def numbers(values: ArrayLike, count: int | None, row: tuple[int, ...], what: st
     found = _array(values, what)
     if found.dtype.kind not in "fiub":
         raise _bad(f"{what} must be numbers, not {found.dtype}")
-    return _shaped(found, count, row, what).astype(np.float64, copy=False)
+    return _shaped(found.astype(np.float64, copy=False), count, row, what)
 
 
-def signed_bytes(values: ArrayLike, count: int, size: int) -> NDArray[np.int64]:
-    """One row of bytes for each of `count`; 128 to 255 are the negative ones. What is no byte is left as it is."""
-    found = _array(values, "configurations")
+def whole_numbers(values: ArrayLike, count: int, size: int, what: str) -> NDArray[np.int64]:
+    """One row of whole numbers for each of `count`; a single row stands for all."""
+    found = _array(values, what)
     if found.dtype.kind not in "iub" and found.size > 0:
-        raise _bad(f"configurations must be whole numbers, not {found.dtype}")
-    codes = _shaped(found, count, (size,), "configurations").astype(np.int64)
-    return np.where((codes > 127) & (codes <= 255), codes - 256, codes)
+        raise _bad(f"{what} must be whole numbers, not {found.dtype}")
+    return _shaped(found.astype(np.int64, copy=False), count, (size,), what)
 
 
 def _array(values: ArrayLike, what: str) -> NDArray[np.generic]:
@@ -33,9 +36,7 @@ def _array(values: ArrayLike, what: str) -> NDArray[np.generic]:
         raise _bad(f"{what} must be an array of numbers") from error
 
 
-def _shaped(
-    found: NDArray[np.generic], count: int | None, row: tuple[int, ...], what: str
-) -> NDArray[np.generic]:
+def _shaped(found: NDArray[_Number], count: int | None, row: tuple[int, ...], what: str) -> NDArray[_Number]:
     if count is not None and found.shape == row:
         return np.broadcast_to(found, (count, *row))
     if found.shape[1:] != row or found.ndim != len(row) + 1 or count not in (None, len(found)):

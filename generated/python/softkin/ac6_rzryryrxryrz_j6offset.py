@@ -741,13 +741,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         # q1: of the point from its axis
         distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
+        # its reference where it is free
         if distance_q1_closed > 1e-11*machine_scale:
             along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
-            cos_q1_closed = along_q1_closed/distance_q1_closed  # its reference where it is free
+            cos_q1_closed = along_q1_closed/distance_q1_closed
             across_q1_closed = sigma_shoulder*wrist_y_closed
             sin_q1_closed = across_q1_closed/distance_q1_closed
         else:
-            cos_q1_closed = cos(free_a1)  # its reference where it is free
+            cos_q1_closed = cos(free_a1)
             sin_q1_closed = sin(free_a1)
         # what the unknown links must span
         wrist_x_from_q1_closed = wrist_x_closed*cos_q1_closed + wrist_y_closed*sin_q1_closed - a1
@@ -961,6 +962,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_swing_q3_closed = (
                 (reach_closed*reach_closed - a2*a2 - effective_q3_closed*effective_q3_closed)/swing_scale_q3_closed
             )
+            # its reference where it is free
             if reach_closed > 1e-11*machine_scale:
                 arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed
                 arm_across_q2_closed = a2 + effective_q3_closed*cos_swing_q3_closed
@@ -972,10 +974,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                     if across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed > 0.0
                     else 1.0
                 )
-                cos_q2_closed = along_q2_closed/length_q2_closed  # its reference where it is free
+                cos_q2_closed = along_q2_closed/length_q2_closed
                 sin_q2_closed = across_q2_closed/length_q2_closed
             else:
-                cos_q2_closed = cos(free_a2)  # its reference where it is free
+                cos_q2_closed = cos(free_a2)
                 sin_q2_closed = sin(free_a2)
             cos_q2 = cos_q2_closed
             sin_q2 = sin_q2_closed
@@ -990,14 +992,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
             # q4: direction and distance of a point
             radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
+            # its reference where it is free
             if radius_q4_closed > 1e-11:
                 along_q4_closed = r33_from_q123_closed*sigma_wrist  # q4: polar angle in the r33 and r23 equations
-                cos_q4_closed = along_q4_closed/radius_q4_closed  # its reference where it is free
+                cos_q4_closed = along_q4_closed/radius_q4_closed
                 across_q4_closed = -r23_from_q1_closed*sigma_wrist
                 sin_q4_closed = across_q4_closed/radius_q4_closed
             else:
                 free_a4 = (ref_a4 - offset_a4)*DEGREE
-                cos_q4_closed = cos(free_a4)  # its reference where it is free
+                cos_q4_closed = cos(free_a4)
                 sin_q4_closed = sin(free_a4)
             cos_q4 = cos_q4_closed
             sin_q4 = sin_q4_closed

@@ -652,33 +652,36 @@ class Ac6ThreeParallel(Mechanism):
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return Status.UNREACHABLE
+        # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
             cos_swing_q1 = -d4/divisor_q1
             sin_swing_q1 = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_shoulder
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1
             sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)  # its reference where it is free
+            cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         q6_radius_of_q5 = radius_q6*sigma_wrist
         cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
+        # its reference where it is free
         if radius_q6 > 1e-11:
             along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
-            cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
+            cos_q6_before_q6_of_q3 = along_q6/radius_q6
             across_q6 = r22_from_q1*sigma_wrist
             sin_q6_before_q6_of_q3 = across_q6/radius_q6
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3 = cos(free_a6)  # its reference where it is free
+            cos_q6_before_q6_of_q3 = cos(free_a6)
             sin_q6_before_q6_of_q3 = sin(free_a6)
         wrist_z = z - d6*r33
+        # moved to where the rest can be reached
         if radius_q6 > 0.01:
-            cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-            sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+            cos_q6 = cos_q6_before_q6_of_q3
+            sin_q6 = sin_q6_before_q6_of_q3
         else:
             wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
             wrist_x_from_q1_along = -d5*r31*cos_q5
@@ -698,9 +701,10 @@ class Ac6ThreeParallel(Mechanism):
             value_q6_of_q3 = (
                 wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
             )
+            # moved to where the rest can be reached
             if abs(value_q6_of_q3) <= size_q6_of_q3:
-                cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-                sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+                cos_q6 = cos_q6_before_q6_of_q3
+                sin_q6 = sin_q6_before_q6_of_q3
             else:
                 along_q6_of_q3 = (
                     2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
@@ -709,11 +713,11 @@ class Ac6ThreeParallel(Mechanism):
                     2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+                # the arc: cosines from its centre
                 if swing_q6_of_q3 > 1e-12*size_q6_of_q3:
                     level_q6_of_q3 = (
                         value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
                     )
-                    # the arc: cosines from its centre
                     highest_q6_of_q3 = (
                         1.0
                         if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
@@ -733,7 +737,7 @@ class Ac6ThreeParallel(Mechanism):
                         )
                     )
                 else:
-                    highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3 = 1.0
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
@@ -758,12 +762,13 @@ class Ac6ThreeParallel(Mechanism):
                     )
                     *radius_q6
                 )
+                # moved to where the rest can be reached
                 if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-                    sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+                    cos_q6 = cos_q6_before_q6_of_q3
+                    sin_q6 = sin_q6_before_q6_of_q3
                 else:
-                    cos_q6 = cos_q6_after_q6_of_q3  # moved to where the rest can be reached
-                    sin_q6 = sin_q6_after_q6_of_q3  # moved to where the rest can be reached
+                    cos_q6 = cos_q6_after_q6_of_q3
+                    sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
         # what the unknown links must span
@@ -783,15 +788,14 @@ class Ac6ThreeParallel(Mechanism):
             axis_a1 = nearest_period(axis_a1, near_a1)
         cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
             direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
         angle_q2 = arctan2(direction_y_q2 + 0.0, direction_x_q2 + 0.0)

@@ -530,13 +530,13 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        # a4: polar angle in the r33 and r13 equations; its reference where it is free
         if radius_a4 > 1e-11:
-            # a4: polar angle in the r33 and r13 equations; its reference where it is free
             direction_x_a4 = r33*sigma_wrist
             direction_y_a4 = r13*sigma_wrist
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_a4 = cos(free_a4)  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4 = cos(free_a4)
             direction_y_a4 = sin(free_a4)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4

@@ -678,14 +678,15 @@ class ArticulatedRobot6DOF(Mechanism):
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return Status.UNREACHABLE
+        # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
             cos_swing_q1 = -d3/divisor_q1
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1
             sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)  # its reference where it is free
+            cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
         wrist_z = z - d6*r33
@@ -706,6 +707,7 @@ class ArticulatedRobot6DOF(Mechanism):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        # its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_q2 = -effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
@@ -717,11 +719,11 @@ class ArticulatedRobot6DOF(Mechanism):
                 if across_q2*across_q2 + along_q2*along_q2 > 0.0
                 else 1.0
             )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
+            cos_q2 = along_q2/length_q2
             sin_q2 = across_q2/length_q2
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            cos_q2 = cos(free_a2)  # its reference where it is free
+            cos_q2 = cos(free_a2)
             sin_q2 = sin(free_a2)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
@@ -742,13 +744,13 @@ class ArticulatedRobot6DOF(Mechanism):
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4 = -r13_from_q123*sigma_hand
             direction_y_q4 = r23_from_q1*sigma_hand
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4 = cos(free_a4)  # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4 = cos(free_a4)
             direction_y_q4 = sin(free_a4)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4

@@ -318,12 +318,13 @@ class Crane(OffsetKinematics):
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
+        # its reference where it is free
         if radius_theta > 1e-11*machine_scale:
-            direction_x_theta = x  # its reference where it is free
+            direction_x_theta = x
             direction_y_theta = y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
         open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
         near_theta = (
@@ -334,12 +335,13 @@ class Crane(OffsetKinematics):
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
+        # its reference where it is free
         if radius_phi > 1e-11*machine_scale:
-            direction_x_phi = z  # its reference where it is free
+            direction_x_phi = z
             direction_y_phi = radius_theta
         else:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
             direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         return (axis_r, axis_theta, axis_phi)
@@ -458,12 +460,13 @@ class Crane(OffsetKinematics):
         radius_theta = sqrt(flange_x*flange_x + flange_y*flange_y)  # theta: direction and distance of a point
         radius_phi = sqrt(flange_z*flange_z + radius_theta*radius_theta)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
+        # its reference where it is free
         if radius_theta > 1e-11*machine_scale:
-            direction_x_theta = flange_x  # its reference where it is free
+            direction_x_theta = flange_x
             direction_y_theta = flange_y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
         open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
         near_theta = (
@@ -474,12 +477,13 @@ class Crane(OffsetKinematics):
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
         if not -180.000000001 <= axis_theta - near_theta < 179.999999999:
             axis_theta = nearest_period(axis_theta, near_theta)
+        # its reference where it is free
         if radius_phi > 1e-11*machine_scale:
-            direction_x_phi = flange_z  # its reference where it is free
+            direction_x_phi = flange_z
             direction_y_phi = radius_theta
         else:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
             direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         return (axis_r, axis_theta, axis_phi)

@@ -460,13 +460,13 @@ class Kin5Axes(Mechanism):
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        # a: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_a > 1e-11:
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a = r13_of_a*sigma_roll
             direction_y_a = r23_of_a*sigma_roll
         else:
             free_a = (ref_a - offset_a)*DEGREE
-            direction_x_a = cos(free_a)  # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
         near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a

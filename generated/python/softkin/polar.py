@@ -245,12 +245,13 @@ class Polar(Mechanism):
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        # its reference where it is free
         if radius_c > 1e-11*machine_scale:
-            direction_x_c = x  # its reference where it is free
+            direction_x_c = x
             direction_y_c = y
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c

@@ -289,12 +289,13 @@ class PolarZ(Mechanism):
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return Status.BAD_INPUT
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        # its reference where it is free
         if radius_c > 1e-11*machine_scale:
-            direction_x_c = x  # its reference where it is free
+            direction_x_c = x
             direction_y_c = y
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         near_c = (360.0*turn_c - 360.0 if turn_c > 0.0 else 360.0*turn_c) if abs(turn_c) > 0.0 else open_c

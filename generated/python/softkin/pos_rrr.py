@@ -426,14 +426,15 @@ class PosRRR(OffsetKinematics):
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return Status.UNREACHABLE
+        # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
             cos_swing_q1 = -d3/divisor_q1
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1
             sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)  # its reference where it is free
+            cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
@@ -453,15 +454,14 @@ class PosRRR(OffsetKinematics):
             axis_a1 = nearest_period(axis_a1, near_a1)
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_q2 = -effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
             direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
@@ -686,14 +686,15 @@ class PosRRR(OffsetKinematics):
         # q3: its effective length is too short
         if not (effective_q3 > 1e-9*a2):
             return Status.UNREACHABLE
+        # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
             cos_swing_q1 = -tool_z/divisor_q1
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1
             sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)  # its reference where it is free
+            cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
@@ -717,15 +718,14 @@ class PosRRR(OffsetKinematics):
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         cos_q3 = tool_x*cos_swing_q3/divisor_q3 + tool_y*sin_swing_q3/divisor_q3
         sin_q3 = tool_x*sin_swing_q3/divisor_q3 - tool_y*cos_swing_q3/divisor_q3
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_q2 = tool_y*cos_q3 + tool_x*sin_q3
             arm_across_q2 = a2 + tool_x*cos_q3 - tool_y*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2 = arm_across_q2*wrist_y_from_q1 - arm_along_q2*wrist_x_from_q1
             direction_y_q2 = -arm_across_q2*wrist_x_from_q1 - arm_along_q2*wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
             direction_x_q2 = cos(free_a2)
             direction_y_q2 = sin(free_a2)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open

@@ -433,15 +433,15 @@ class Scara3Z(TwistChoice):
             return Status.UNREACHABLE
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
+        # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
             arm_across_a1 = arm_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
             direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
             direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open

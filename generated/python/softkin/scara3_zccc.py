@@ -438,15 +438,15 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         axis_a1 = offset_a1 + z
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
         sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
+        # a2: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
-            # a2: linear pair in the x and y equations; its reference where it is free
             direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
             direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            direction_x_a2 = cos(free_a2)  # a2: linear pair in the x and y equations; its reference where it is free
+            direction_x_a2 = cos(free_a2)
             direction_y_a2 = sin(free_a2)
         angle_a2 = arctan2(direction_y_a2 + 0.0, direction_x_a2 + 0.0)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
@@ -676,15 +676,15 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
         cos_a3 = tool_x*cos_swing_a3/divisor_a3 + tool_y*sin_swing_a3/divisor_a3
         sin_a3 = tool_x*sin_swing_a3/divisor_a3 - tool_y*cos_swing_a3/divisor_a3
+        # a2: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a2 = link_length_1 + tool_x*cos_a3 - tool_y*sin_a3
             arm_across_a2 = tool_y*cos_a3 + tool_x*sin_a3
-            # a2: linear pair in the x and y equations; its reference where it is free
             direction_x_a2 = arm_across_a2*y + arm_along_a2*x
             direction_y_a2 = arm_along_a2*y - arm_across_a2*x
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            direction_x_a2 = cos(free_a2)  # a2: linear pair in the x and y equations; its reference where it is free
+            direction_x_a2 = cos(free_a2)
             direction_y_a2 = sin(free_a2)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2

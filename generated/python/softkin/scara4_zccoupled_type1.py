@@ -440,15 +440,15 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
             return Status.UNREACHABLE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
+        # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
             direction_x_a1 = arm_across_a1*y + arm_along_a1*x
             direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
@@ -658,15 +658,15 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
         cos_a2 = tool_x*cos_swing_a2/divisor_a2 + tool_y*sin_swing_a2/divisor_a2
         sin_a2 = tool_x*sin_swing_a2/divisor_a2 - tool_y*cos_swing_a2/divisor_a2
+        # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
             arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
             direction_x_a1 = arm_across_a1*y + arm_along_a1*x
             direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1

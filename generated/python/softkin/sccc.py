@@ -512,15 +512,15 @@ class SCCC(OffsetKinematics, TwistChoice):
             return Status.UNREACHABLE
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
+        # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
             direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
             direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         angle_a1 = arctan2(direction_y_a1 + 0.0, direction_x_a1 + 0.0)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
@@ -549,12 +549,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
+            # A3: where its turn is open
             if single_a3 > 0.0:
-                open_a3 = mid_a3  # A3: where its turn is open
+                open_a3 = mid_a3
             else:
                 ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
                 free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-                # A3: where its turn is open
                 open_a3 = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE
             near_a3 = open_a3
         # a3: what the sum a123 leaves; A3: its turn
@@ -824,14 +824,14 @@ class SCCC(OffsetKinematics, TwistChoice):
         sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
         cos_a2 = tool_x*cos_swing_a2/divisor_a2 + tool_y*sin_swing_a2/divisor_a2
         sin_a2 = tool_x*sin_swing_a2/divisor_a2 - tool_y*cos_swing_a2/divisor_a2
+        # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + tool_x*cos_a2 - tool_y*sin_a2
             arm_across_a1 = tool_y*cos_a2 + tool_x*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
             direction_x_a1 = arm_across_a1*y + arm_along_a1*x
             direction_y_a1 = arm_along_a1*y - arm_across_a1*x
         else:
-            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_x_a1 = cos(free_a1)
             direction_y_a1 = sin(free_a1)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1

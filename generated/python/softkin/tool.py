@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import sqrt
-from softkin._types import Axis, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.tool import unrolled
 
 if TYPE_CHECKING:

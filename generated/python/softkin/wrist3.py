@@ -382,12 +382,13 @@ class Wrist3(OrientationKinematics):
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return Status.BAD_INPUT
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
+        # c: polar angle in the r31 and r32 equations; its reference where it is free
         if radius_c > 1e-11:
-            direction_x_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_x_c = r31*sigma_hand
             direction_y_c = -r32*sigma_hand
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
         r22_before_c = direction_x_c*r22 + direction_y_c*r21
         sin_a = -direction_x_c*r12 - direction_y_c*r11

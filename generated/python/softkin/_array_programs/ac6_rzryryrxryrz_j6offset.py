@@ -9,14 +9,15 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     advanced,
-    atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     initial,
     nearest_period,
     passed,
@@ -26,6 +27,7 @@ from softkin._array import (
     settled,
     sin,
     solve,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -146,7 +148,10 @@ class ArrayPrograms(Programs):
         wrist_x_tried = x + j6_offset_x*r12_at_q6*sin_q6 - d6*r13_at_q5 - j6_offset_x*r11_at_q6*cos_q6
         wrist_y_tried = y + j6_offset_x*r22_at_q6*sin_q6 - d6*r23_at_q5 - j6_offset_x*r21_at_q6*cos_q6
         margin_shoulder_tried = (wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)/machine_scale
-        if everywhere(searched > 0.5):
+        branch_shoulder: Real
+        branch_elbow: Real
+        branch_wrist: Real
+        if searched > 0.5:
             branch_shoulder = margin_shoulder_tried
             sin_q3 = sin(q3)
             cos_q3 = cos(q3)
@@ -156,14 +161,12 @@ class ArrayPrograms(Programs):
             wrist_x_closed = x - d6*r13_at_q5  # the point that the last joints turn about
             wrist_y_closed = y - d6*r23_at_q5
             margin_shoulder_closed = (wrist_x_closed*cos_q1 + wrist_y_closed*sin_q1)/machine_scale
-            branch_shoulder = select(searched > 0.5, margin_shoulder_tried, margin_shoulder_closed)
+            branch_shoulder = margin_shoulder_closed
             sin_q3_closed = sin(q3)
             cos_q3_closed = cos(q3)
             margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_closed
-            sin_q3 = sin(q3)
-            cos_q3 = cos(q3)
-            branch_elbow = select(searched > 0.5, (a3*sin_q3 + d4*cos_q3)/machine_scale, margin_elbow_closed)
-            branch_wrist = select(searched > 0.5, sin_q4, cos_q5)
+            branch_elbow = margin_elbow_closed
+            branch_wrist = cos_q5
         # of the Jacobian, its positions in lengths of the machine
         (determinant,) = solve(
             (
@@ -199,7 +202,7 @@ class ArrayPrograms(Programs):
             searched > 0.5,
             (
                 0.5*select(margin_shoulder_tried >= 0.0, 1.0, -1.0)*select(sin_q4 >= 0.0, 1.0, -1.0)*determinant
-                *machine_scale*machine_scale/(root(a3*a3 + d4*d4)*a2)
+                *machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
             ),
             1.0,
         )
@@ -296,32 +299,28 @@ class ArrayPrograms(Programs):
         wrist_y_closed = y - d6*r23
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         # q1: of the point from its axis
-        distance_q1_closed = root(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
-        if everywhere(distance_q1_closed > 1e-11*machine_scale):
-            along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
-            cos_q1_closed = along_q1_closed/distance_q1_closed  # its reference where it is free
-            across_q1_closed = sigma_shoulder*wrist_y_closed
-            sin_q1_closed = across_q1_closed/distance_q1_closed
-        else:
-            along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
-            length_q1_closed = select(distance_q1_closed > 1e-11*machine_scale, distance_q1_closed, 1.0)
-            # its reference where it is free
-            cos_q1_closed = select(
-                distance_q1_closed > 1e-11*machine_scale,
-                along_q1_closed/length_q1_closed,
-                cos(free_a1),
-            )
-            across_q1_closed = sigma_shoulder*wrist_y_closed
-            sin_q1_closed = select(
-                distance_q1_closed > 1e-11*machine_scale,
-                across_q1_closed/length_q1_closed,
-                sin(free_a1),
-            )
+        distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
+
+        def elsewhere_cos_q1_closed(free_a1: Real) -> Reals:
+            cos_q1_closed = cos(free_a1)  # its reference where it is free
+            sin_q1_closed = sin(free_a1)
+            return (cos_q1_closed, sin_q1_closed)
+
+        along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
+        cos_q1_closed = along_q1_closed/distance_q1_closed  # its reference where it is free
+        across_q1_closed = sigma_shoulder*wrist_y_closed
+        sin_q1_closed = across_q1_closed/distance_q1_closed
+        cos_q1_closed, sin_q1_closed = elsewhere(
+            distance_q1_closed > 1e-11*machine_scale,
+            (cos_q1_closed, sin_q1_closed),
+            elsewhere_cos_q1_closed,
+            (free_a1,),
+        )
         # what the unknown links must span
         wrist_x_from_q1_closed = wrist_x_closed*cos_q1_closed + wrist_y_closed*sin_q1_closed - a1
         wrist_z_closed = z - d6*r33
         wrist_z_from_q1_closed = wrist_z_closed - d1  # what the unknown links must span
-        reach_closed = root(
+        reach_closed = sqrt(
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
         # kept as a product
@@ -348,7 +347,7 @@ class ArrayPrograms(Programs):
             wrist_x_tried = x + j6_offset_x*r12*sin_q6_tried - d6*r13 - j6_offset_x*r11*cos_q6_tried
             wrist_y_tried = y + j6_offset_x*r22*sin_q6_tried - d6*r23 - j6_offset_x*r21*cos_q6_tried
             # q1: of the point from its axis
-            distance_q1_tried = root(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
+            distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
             along_q1_tried = sigma_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
             length_q1_tried = select(distance_q1_tried > 1e-11*machine_scale, distance_q1_tried, 1.0)
             # its reference where it is free
@@ -361,7 +360,7 @@ class ArrayPrograms(Programs):
             r23_from_q1_tried = r23*cos_q1_tried - r13*sin_q1_tried
             r21_from_q1_before_q6_tried = r21_from_q1_tried*cos_q6_tried - r22_from_q1_tried*sin_q6_tried
             # q5: direction and distance of a point
-            radius_q5_tried = root(
+            radius_q5_tried = sqrt(
                 r21_from_q1_before_q6_tried*r21_from_q1_before_q6_tried + r23_from_q1_tried*r23_from_q1_tried
             )
             q5_radius_of_q4_tried = radius_q5_tried*sigma_wrist
@@ -386,7 +385,7 @@ class ArrayPrograms(Programs):
             )
             wrist_z_tried = z + j6_offset_x*r32*sin_q6_tried - d6*r33 - j6_offset_x*r31*cos_q6_tried
             z_from_q1_of_q2_tried = wrist_z_tried + d4*sin_q23_tried - d1 - a3*r33_from_q1_before_q456_tried
-            reach_tried = root(x_from_q1_of_q2_tried*x_from_q1_of_q2_tried + z_from_q1_of_q2_tried*z_from_q1_of_q2_tried)
+            reach_tried = sqrt(x_from_q1_of_q2_tried*x_from_q1_of_q2_tried + z_from_q1_of_q2_tried*z_from_q1_of_q2_tried)
             along_q2_tried = a2*z_from_q1_of_q2_tried  # q2: linear pair in the x_from_q1 and z_from_q1 equations
             across_q2_tried = a2*x_from_q1_of_q2_tried
             length_q2_tried = select(
@@ -394,7 +393,7 @@ class ArrayPrograms(Programs):
                     (reach_tried > 1e-11*machine_scale)
                     & (across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0)
                 ),
-                root(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried),
+                sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried),
                 1.0,
             )
             # its reference where it is free
@@ -515,7 +514,19 @@ class ArrayPrograms(Programs):
         require(status, done, Status.UNREACHABLE)
         # A6: the search along it finds no root of this branch
         require(status, (accepted > 0.5) | (searched < 0.5), Status.UNREACHABLE)
-        if everywhere(searched > 0.5):
+        cos_q1: Real
+        sin_q1: Real
+        cos_q2: Real
+        sin_q2: Real
+        cos_q3: Real
+        sin_q3: Real
+        cos_q4: Real
+        sin_q4: Real
+        cos_q5: Real
+        sin_q5: Real
+        cos_q6: Real
+        sin_q6: Real
+        if searched > 0.5:
             cos_q1 = cos_q1_tried
             sin_q1 = sin_q1_tried
             cos_q2 = cos_q2_tried
@@ -529,106 +540,124 @@ class ArrayPrograms(Programs):
             cos_q6 = cos_q6_tried
             sin_q6 = sin_q6_tried
         else:
-            cos_q1 = select(searched > 0.5, cos_q1_tried, cos_q1_closed)
-            sin_q1 = select(searched > 0.5, sin_q1_tried, sin_q1_closed)
+            cos_q1 = cos_q1_closed
+            sin_q1 = sin_q1_closed
             sin_swing_q3_closed = root(sine_square_q3_closed)*sigma_elbow
-            arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed
             cos_swing_q3_closed = (
                 (reach_closed*reach_closed - a2*a2 - effective_q3_closed*effective_q3_closed)/swing_scale_q3_closed
             )
+
+            def elsewhere_cos_q2_closed(free_a2: Real) -> Reals:
+                cos_q2_closed = cos(free_a2)  # its reference where it is free
+                sin_q2_closed = sin(free_a2)
+                return (cos_q2_closed, sin_q2_closed)
+
+            arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed
             arm_across_q2_closed = a2 + effective_q3_closed*cos_swing_q3_closed
             # q2: linear pair in the x_from_q1 and z_from_q1 equations
             along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
             across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
             length_q2_closed = select(
-                (
-                    (reach_closed > 1e-11*machine_scale)
-                    & (across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed > 0.0)
-                ),
-                root(across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed),
+                across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed > 0.0,
+                sqrt(across_q2_closed*across_q2_closed + along_q2_closed*along_q2_closed),
                 1.0,
             )
-            # its reference where it is free
-            cos_q2_closed = select(reach_closed > 1e-11*machine_scale, along_q2_closed/length_q2_closed, cos(free_a2))
-            cos_q2 = select(searched > 0.5, cos_q2_tried, cos_q2_closed)
-            sin_q2_closed = select(reach_closed > 1e-11*machine_scale, across_q2_closed/length_q2_closed, sin(free_a2))
-            sin_q2 = select(searched > 0.5, sin_q2_tried, sin_q2_closed)
+            cos_q2_closed = along_q2_closed/length_q2_closed  # its reference where it is free
+            sin_q2_closed = across_q2_closed/length_q2_closed
+            cos_q2_closed, sin_q2_closed = elsewhere(
+                reach_closed > 1e-11*machine_scale,
+                (cos_q2_closed, sin_q2_closed),
+                elsewhere_cos_q2_closed,
+                (free_a2,),
+            )
+            cos_q2 = cos_q2_closed
+            sin_q2 = sin_q2_closed
             cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
-            cos_q3 = select(searched > 0.5, cos_q3_tried, cos_q3_closed)
+            cos_q3 = cos_q3_closed
             sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
-            sin_q3 = select(searched > 0.5, sin_q3_tried, sin_q3_closed)
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
+            sin_q3 = sin_q3_closed
             r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
             sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
             cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
             r33_from_q123_closed = r33*cos_q23_closed + r13_from_q1_closed*sin_q23_closed
             r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
             # q4: direction and distance of a point
-            radius_q4_closed = root(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
+            radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
+
+            def elsewhere_cos_q4_closed(ref_a4: Real) -> Reals:
+                free_a4 = (ref_a4 - offset_a4)*DEGREE
+                cos_q4_closed = cos(free_a4)  # its reference where it is free
+                sin_q4_closed = sin(free_a4)
+                return (cos_q4_closed, sin_q4_closed)
+
             along_q4_closed = r33_from_q123_closed*sigma_wrist  # q4: polar angle in the r33 and r23 equations
-            length_q4_closed = select(radius_q4_closed > 1e-11, radius_q4_closed, 1.0)
-            # its reference where it is free
-            cos_q4_closed = select(radius_q4_closed > 1e-11, along_q4_closed/length_q4_closed, cos(free_a4))
-            cos_q4 = select(searched > 0.5, r22_from_q1_before_q6_tried, cos_q4_closed)
+            cos_q4_closed = along_q4_closed/radius_q4_closed  # its reference where it is free
             across_q4_closed = -r23_from_q1_closed*sigma_wrist
-            sin_q4_closed = select(radius_q4_closed > 1e-11, across_q4_closed/length_q4_closed, sin(free_a4))
-            sin_q4 = select(searched > 0.5, q5_radius_of_q4_tried, sin_q4_closed)
+            sin_q4_closed = across_q4_closed/radius_q4_closed
+            cos_q4_closed, sin_q4_closed = elsewhere(
+                radius_q4_closed > 1e-11,
+                (cos_q4_closed, sin_q4_closed),
+                elsewhere_cos_q4_closed,
+                (ref_a4,),
+            )
+            cos_q4 = cos_q4_closed
+            sin_q4 = sin_q4_closed
             q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
-            cos_q5 = select(searched > 0.5, cos_q5_tried, q4_radius_of_q5_closed)
+            cos_q5 = q4_radius_of_q5_closed
             r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
-            sin_q5 = select(searched > 0.5, sin_q5_tried, r13_from_q123_closed)
+            sin_q5 = r13_from_q123_closed
             r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
             r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
             r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
             r22_from_q1234_closed = r22_from_q1_closed*cos_q4_closed + r32_from_q123_closed*sin_q4_closed
-            cos_q6 = select(searched > 0.5, cos_q6_tried, r22_from_q1234_closed)
+            cos_q6 = r22_from_q1234_closed
             r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
             r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
             r31_from_q123_closed = r31*cos_q23_closed + r11_from_q1_closed*sin_q23_closed
             r21_from_q1234_closed = r21_from_q1_closed*cos_q4_closed + r31_from_q123_closed*sin_q4_closed
-            sin_q6 = select(searched > 0.5, sin_q6_tried, r21_from_q1234_closed)
+            sin_q6 = r21_from_q1234_closed
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: its turn
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(sin_q4, cos_q4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = nearest_period(offset_a4 + degrees(sin_q4, cos_q4), near_a4)  # A4: its turn
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
         near_a5 = select(
             absolute(turn_a5) > 0.0,
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5 = nearest_period(offset_a5 + atan2(sin_q5, cos_q5)/DEGREE, near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + degrees(sin_q5, cos_q5), near_a5)  # A5: its turn
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
             select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
             open_a6,
         )
-        axis_a6 = nearest_period(offset_a6 + atan2(sin_q6, cos_q6)/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -10,13 +10,15 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     nearest_on_arc,
     nearest_period,
     passed,
@@ -25,6 +27,7 @@ from softkin._array import (
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -211,68 +214,59 @@ class ArrayPrograms(Programs):
         )
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
-        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1 = -root(sine_square_q1)*sigma_shoulder
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
-            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1 = -root(sine_square_q1)*sigma_shoulder
-            # its reference where it is free
-            cos_q1 = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1 = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1,
-                sin(free_a1),
-            )
+            cos_q1 = cos(free_a1)  # its reference where it is free
+            sin_q1 = sin(free_a1)
+            return (cos_q1, sin_q1)
+
+        cos_swing_q1 = -d4/divisor_q1
+        sin_swing_q1 = -root(sine_square_q1)*sigma_shoulder
+        cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+        sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+        cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
-        radius_q6 = root(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         q6_radius_of_q5 = radius_q6*sigma_wrist
         cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
-        if everywhere(radius_q6 > 1e-11):
-            along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
-            cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
-            across_q6 = r22_from_q1*sigma_wrist
-            sin_q6_before_q6_of_q3 = across_q6/radius_q6
-        else:
+
+        def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
-            length_q6 = select(radius_q6 > 1e-11, radius_q6, 1.0)
-            # its reference where it is free
-            cos_q6_before_q6_of_q3 = select(radius_q6 > 1e-11, along_q6/length_q6, cos(free_a6))
-            across_q6 = r22_from_q1*sigma_wrist
-            sin_q6_before_q6_of_q3 = select(radius_q6 > 1e-11, across_q6/length_q6, sin(free_a6))
+            cos_q6_before_q6_of_q3 = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3 = sin(free_a6)
+            return (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3)
+
+        along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
+        cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
+        across_q6 = r22_from_q1*sigma_wrist
+        sin_q6_before_q6_of_q3 = across_q6/radius_q6
+        cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3 = elsewhere(
+            radius_q6 > 1e-11,
+            (cos_q6_before_q6_of_q3, sin_q6_before_q6_of_q3),
+            elsewhere_cos_q6_before_q6_of_q3,
+            (ref_a6,),
+        )
         wrist_z = z - d6*r33
-        if everywhere(radius_q6 > 0.01):
-            cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-            sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
-        else:
+
+        def elsewhere_cos_q6(
+            cos_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5: Real, r31: Real, r32: Real,
+            r33: Real, radius_q6: Real, sin_q1: Real, sin_q6_before_q6_of_q3: Real, wrist_x: Real, wrist_y: Real,
+            wrist_z: Real,
+        ) -> Reals:
             wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
             wrist_x_from_q1_along = -d5*r31*cos_q5
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
-            along_q6_of_q3 = (
-                2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
             wrist_x_from_q1_across = d5*r32*cos_q5
             wrist_y_from_q1_across = d5*r31
-            across_q6_of_q3 = (
-                2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3 = root(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
             wrist_x_from_q1_here = (
                 wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
                 + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
@@ -285,81 +279,121 @@ class ArrayPrograms(Programs):
             value_q6_of_q3 = (
                 wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
             )
-            level_q6_of_q3 = (
-                value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
-            )
-            divisor_q6_of_q3 = select(swing_q6_of_q3 > 1e-12*size_q6_of_q3, swing_q6_of_q3, 1.0)
-            # the arc: cosines from its centre
-            highest_q6_of_q3 = select(
-                swing_q6_of_q3 > 1e-12*size_q6_of_q3,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3 > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3 < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3)/divisor_q6_of_q3,
-                    ),
-                ),
-                1.0,
-            )
-            near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
-            lowest_q6_of_q3 = select(
-                swing_q6_of_q3 > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3 > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3 < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3 - size_q6_of_q3)/divisor_q6_of_q3,
-                    ),
-                ),
-                -1.0,
-            )
-            far_q6_of_q3 = atan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-            centre_q6_of_q3 = atan2(across_q6_of_q3, along_q6_of_q3)
-            angle_q6_of_q3 = atan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
-            side_q6_of_q3 = select(
-                along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0, 1.0, -1.0,
-            )
-            moved_q6_of_q3 = nearest_on_arc(
-                angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
-                0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
-            )
-            cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
-            sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
-            # what the motion changes of the pose
-            cost_q6_of_q3 = (
-                root(
-                    (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
-                    + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
+
+            def elsewhere_cos_q6(
+                cos_q6_before_q6_of_q3: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
+                wrist_x_from_q1_across: Real, wrist_x_from_q1_along: Real, wrist_x_from_q1_fixed: Real,
+                wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
+            ) -> Reals:
+                along_q6_of_q3 = (
+                    2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
-                *radius_q6
-            )
-            stays_q6_of_q3 = select(
+                across_q6_of_q3 = (
+                    2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+
+                def elsewhere_highest_q6_of_q3() -> Reals:
+                    highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3 = -1.0
+                    return (highest_q6_of_q3, lowest_q6_of_q3)
+
+                level_q6_of_q3 = (
+                    value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
+                )
+                # the arc: cosines from its centre
+                highest_q6_of_q3 = select(
+                    (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3,
+                    ),
+                )
+                lowest_q6_of_q3 = select(
+                    (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3,
+                    ),
+                )
+                highest_q6_of_q3, lowest_q6_of_q3 = elsewhere(
+                    swing_q6_of_q3 > 1e-12*size_q6_of_q3,
+                    (highest_q6_of_q3, lowest_q6_of_q3),
+                    elsewhere_highest_q6_of_q3,
+                    (),
+                )
+                near_q6_of_q3 = atan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
+                far_q6_of_q3 = atan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
+                centre_q6_of_q3 = atan2(across_q6_of_q3, along_q6_of_q3)
+                angle_q6_of_q3 = atan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
+                side_q6_of_q3 = select(
+                    along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0, 1.0, -1.0,
+                )
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+                )
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                # what the motion changes of the pose
+                cost_q6_of_q3 = (
+                    sqrt(
+                        (cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3)
+                        + (sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3)
+                    )
+                    *radius_q6
+                )
+
+                def elsewhere_cos_q6(cos_q6_after_q6_of_q3: Real, sin_q6_after_q6_of_q3: Real) -> Reals:
+                    cos_q6 = cos_q6_after_q6_of_q3  # moved to where the rest can be reached
+                    sin_q6 = sin_q6_after_q6_of_q3  # moved to where the rest can be reached
+                    return (cos_q6, sin_q6)
+
+                cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
+                sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+                cos_q6, sin_q6 = elsewhere(
+                    (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11),
+                    (cos_q6, sin_q6),
+                    elsewhere_cos_q6,
+                    (cos_q6_after_q6_of_q3, sin_q6_after_q6_of_q3),
+                )
+                return (cos_q6, sin_q6)
+
+            cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
+            sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+            cos_q6, sin_q6 = elsewhere(
                 absolute(value_q6_of_q3) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11), 1.0, 0.0),
+                (cos_q6, sin_q6),
+                elsewhere_cos_q6,
+                (
+                    cos_q6_before_q6_of_q3, radius_q6, sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_x_from_q1_across,
+                    wrist_x_from_q1_along, wrist_x_from_q1_fixed, wrist_y_from_q1_across, wrist_y_from_q1_along,
+                    wrist_y_from_q1_fixed,
+                ),
             )
-            # moved to where the rest can be reached
-            cos_q6 = select(
-                radius_q6 > 0.01,
-                cos_q6_before_q6_of_q3,
-                select(stays_q6_of_q3 > 0.0, cos_q6_before_q6_of_q3, cos_q6_after_q6_of_q3),
-            )
-            # moved to where the rest can be reached
-            sin_q6 = select(
-                radius_q6 > 0.01,
-                sin_q6_before_q6_of_q3,
-                select(stays_q6_of_q3 > 0.0, sin_q6_before_q6_of_q3, sin_q6_after_q6_of_q3),
-            )
+            return (cos_q6, sin_q6)
+
+        cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
+        sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+        cos_q6, sin_q6 = elsewhere(
+            radius_q6 > 0.01,
+            (cos_q6, sin_q6),
+            elsewhere_cos_q6,
+            (
+                cos_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5, r31, r32, r33, radius_q6, sin_q1,
+                sin_q6_before_q6_of_q3, wrist_x, wrist_y, wrist_z,
+            ),
+        )
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
         # what the unknown links must span
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
-        reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (a3 + reach - a2)*(a2 + a3 + reach)*(a2 + a3 - reach)*(a2 + reach - a3)/(scale_q3*scale_q3)
         # q3: out of reach
@@ -370,30 +404,28 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
         sin_q3 = root(sine_square_q3)*sigma_elbow
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        else:
+
+        def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2 = select(
-                reach > 1e-11*machine_scale,
-                arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1,
-                cos(free_a2),
-            )
-            direction_y_q2 = select(
-                reach > 1e-11*machine_scale,
-                arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1,
-                sin(free_a2),
-            )
+            direction_x_q2 = cos(free_a2)
+            direction_y_q2 = sin(free_a2)
+            return (direction_x_q2, direction_y_q2)
+
+        arm_along_q2 = a2 + a3*cos_q3
+        arm_across_q2 = a3*sin_q3
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+        direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        direction_x_q2, direction_y_q2 = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_q2, direction_y_q2),
+            elsewhere_direction_x_q2,
+            (ref_a2,),
+        )
         angle_q2 = atan2(direction_y_q2, direction_x_q2)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
@@ -425,14 +457,14 @@ class ArrayPrograms(Programs):
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5 = nearest_period(offset_a5 + atan2(q6_radius_of_q5, cos_q5)/DEGREE, near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + degrees(q6_radius_of_q5, cos_q5), near_a5)  # A5: its turn
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
             select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
             open_a6,
         )
-        axis_a6 = nearest_period(offset_a6 + atan2(sin_q6, cos_q6)/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -541,101 +573,82 @@ class ArrayPrograms(Programs):
         )
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
-        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1_right = root(sine_square_q1)
-            cos_q1_left = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_right)/divisor_q1  # its reference where it is free
-            sin_q1_left = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_right)/divisor_q1
-            # its reference where it is free
-            cos_q1_right = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_right)/divisor_q1
-            sin_q1_right = (wrist_y*sin_swing_q1_right - wrist_x*cos_swing_q1)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1_left(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1_right = root(sine_square_q1)
-            # its reference where it is free
-            cos_q1_left = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_right)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_left = select(
-                distance_q1 > 1e-11*machine_scale,
-                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_right)/divisor_q1,
-                sin(free_a1),
-            )
-            # its reference where it is free
-            cos_q1_right = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_right)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_right = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*sin_swing_q1_right - wrist_x*cos_swing_q1)/divisor_q1,
-                sin(free_a1),
-            )
+            cos_q1_left = cos(free_a1)  # its reference where it is free
+            sin_q1_left = sin(free_a1)
+            cos_q1_right = cos_q1_left  # its reference where it is free
+            sin_q1_right = sin_q1_left
+            return (cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right)
+
+        cos_swing_q1 = -d4/divisor_q1
+        sin_swing_q1_right = root(sine_square_q1)
+        cos_q1_left = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_right)/divisor_q1  # its reference where it is free
+        sin_q1_left = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_right)/divisor_q1
+        # its reference where it is free
+        cos_q1_right = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_right)/divisor_q1
+        sin_q1_right = (wrist_y*sin_swing_q1_right - wrist_x*cos_swing_q1)/divisor_q1
+        cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right = elsewhere(
+            distance_q1 > 1e-11*machine_scale,
+            (cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right),
+            elsewhere_cos_q1_left,
+            (ref_a1,),
+        )
         r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
         r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
         # q6: direction and distance of a point
-        radius_q6_left = root(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
+        radius_q6_left = sqrt(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
         cos_q5_left = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
-        if everywhere(radius_q6_left > 1e-11):
-            cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
-            cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down
-        else:
+
+        def elsewhere_cos_q6_before_q6_of_q3_left_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            length_q6_left = select(radius_q6_left > 1e-11, radius_q6_left, 1.0)
-            # its reference where it is free
-            cos_q6_before_q6_of_q3_left_down = select(
-                radius_q6_left > 1e-11,
-                -r21_from_q1_left/length_q6_left,
-                cos(free_a6),
+            cos_q6_before_q6_of_q3_left_down = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_left_up = cos_q6_before_q6_of_q3_left_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_up = sin_q6_before_q6_of_q3_left_down
+            return (
+                cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
+                sin_q6_before_q6_of_q3_left_up,
             )
-            sin_q6_before_q6_of_q3_left_down = select(
-                radius_q6_left > 1e-11,
-                r22_from_q1_left/length_q6_left,
-                sin(free_a6),
-            )
-            # its reference where it is free
-            cos_q6_before_q6_of_q3_left_up = select(radius_q6_left > 1e-11, r21_from_q1_left/length_q6_left, cos(free_a6))
-            sin_q6_before_q6_of_q3_left_up = select(
-                radius_q6_left > 1e-11,
-                -r22_from_q1_left/length_q6_left,
-                sin(free_a6),
-            )
+
+        cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
+        sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
+        cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down  # its reference where it is free
+        sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down
+        found = elsewhere(
+            radius_q6_left > 1e-11,
+            (
+                cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
+                sin_q6_before_q6_of_q3_left_up,
+            ),
+            elsewhere_cos_q6_before_q6_of_q3_left_down,
+            (ref_a6,),
+        )
+        (
+            cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
+            sin_q6_before_q6_of_q3_left_up,
+        ) = found
         wrist_z = z - d6*r33
-        if everywhere(radius_q6_left > 0.01):
-            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-        else:
+
+        def elsewhere_cos_q6_left_down(
+            cos_q1_left: Real, cos_q5_left: Real, cos_q6_before_q6_of_q3_left_down: Real,
+            cos_q6_before_q6_of_q3_left_up: Real, r31: Real, r32: Real, r33: Real, radius_q6_left: Real,
+            sin_q1_left: Real, sin_q6_before_q6_of_q3_left_down: Real, sin_q6_before_q6_of_q3_left_up: Real,
+            wrist_x: Real, wrist_y: Real, wrist_z: Real,
+        ) -> Reals:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_across = d5*r31
             wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
             wrist_x_from_q1_along_left = -d5*r31*cos_q5_left
-            along_q6_of_q3_left_down = (
-                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_down
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
             wrist_x_from_q1_across_left = d5*r32*cos_q5_left
-            across_q6_of_q3_left_down = (
-                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_down
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_left_down = root(
-                across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
-            )
             wrist_x_from_q1_here_left_down = (
                 wrist_x_from_q1_fixed_left_down + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_down
                 + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_down
@@ -649,108 +662,129 @@ class ArrayPrograms(Programs):
                 wrist_x_from_q1_here_left_down*wrist_x_from_q1_here_left_down
                 + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2*a2 - a3*a3
             )
-            level_q6_of_q3_left_down = (
-                value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
-                - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
-            )
-            divisor_q6_of_q3_left_down = select(
-                swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3, swing_q6_of_q3_left_down, 1.0,
-            )
-            # the arc: cosines from its centre
-            highest_q6_of_q3_left_down = select(
-                swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3_left_down)/divisor_q6_of_q3_left_down > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3_left_down)/divisor_q6_of_q3_left_down < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_left_down)/divisor_q6_of_q3_left_down,
-                    ),
-                ),
-                1.0,
-            )
-            near_q6_of_q3_left_down = atan2(
-                root((1.0 - highest_q6_of_q3_left_down)*(1.0 + highest_q6_of_q3_left_down)),
-                highest_q6_of_q3_left_down,
-            )
-            lowest_q6_of_q3_left_down = select(
-                swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3_left_down - size_q6_of_q3)/divisor_q6_of_q3_left_down > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3_left_down - size_q6_of_q3)/divisor_q6_of_q3_left_down < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_left_down - size_q6_of_q3)/divisor_q6_of_q3_left_down,
-                    ),
-                ),
-                -1.0,
-            )
-            far_q6_of_q3_left_down = atan2(
-                root((1.0 - lowest_q6_of_q3_left_down)*(1.0 + lowest_q6_of_q3_left_down)),
-                lowest_q6_of_q3_left_down,
-            )
-            centre_q6_of_q3_left_down = atan2(across_q6_of_q3_left_down, along_q6_of_q3_left_down)
-            angle_q6_of_q3_left_down = atan2(sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_down)
-            side_q6_of_q3_left_down = select(
-                (
-                    along_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
-                    - across_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down >= 0.0
-                ),
-                1.0,
-                -1.0,
-            )
-            moved_q6_of_q3_left_down = nearest_on_arc(
-                angle_q6_of_q3_left_down,
-                (
-                    centre_q6_of_q3_left_down
-                    + 0.5*(far_q6_of_q3_left_down + near_q6_of_q3_left_down)*side_q6_of_q3_left_down
-                ),
-                0.5*far_q6_of_q3_left_down - 0.5*near_q6_of_q3_left_down,
-            )
-            cos_q6_after_q6_of_q3_left_down = cos(moved_q6_of_q3_left_down)
-            sin_q6_after_q6_of_q3_left_down = sin(moved_q6_of_q3_left_down)
-            # what the motion changes of the pose
-            cost_q6_of_q3_left_down = (
-                root(
-                    (
-                        cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down
-                    )*(cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down)
-                    + (
-                        sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down
-                    )*(sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down)
+
+            def elsewhere_cos_q6_left_down(
+                cos_q6_before_q6_of_q3_left_down: Real, radius_q6_left: Real, sin_q6_before_q6_of_q3_left_down: Real,
+                value_q6_of_q3_left_down: Real, wrist_x_from_q1_across_left: Real, wrist_x_from_q1_along_left: Real,
+                wrist_x_from_q1_fixed_left_down: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+                wrist_y_from_q1_fixed: Real,
+            ) -> Reals:
+                along_q6_of_q3_left_down = (
+                    2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_down
+                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
-                *radius_q6_left
-            )
-            stays_q6_of_q3_left_down = select(
+                across_q6_of_q3_left_down = (
+                    2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_down
+                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                )
+                swing_q6_of_q3_left_down = sqrt(
+                    across_q6_of_q3_left_down*across_q6_of_q3_left_down + along_q6_of_q3_left_down*along_q6_of_q3_left_down
+                )
+
+                def elsewhere_highest_q6_of_q3_left_down() -> Reals:
+                    highest_q6_of_q3_left_down = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_left_down = -1.0
+                    return (highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down)
+
+                level_q6_of_q3_left_down = (
+                    value_q6_of_q3_left_down - across_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
+                    - along_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down
+                )
+                # the arc: cosines from its centre
+                highest_q6_of_q3_left_down = select(
+                    (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down,
+                    ),
+                )
+                lowest_q6_of_q3_left_down = select(
+                    (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down,
+                    ),
+                )
+                highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down = elsewhere(
+                    swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3,
+                    (highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down),
+                    elsewhere_highest_q6_of_q3_left_down,
+                    (),
+                )
+                near_q6_of_q3_left_down = atan2(
+                    root((1.0 - highest_q6_of_q3_left_down)*(1.0 + highest_q6_of_q3_left_down)),
+                    highest_q6_of_q3_left_down,
+                )
+                far_q6_of_q3_left_down = atan2(
+                    root((1.0 - lowest_q6_of_q3_left_down)*(1.0 + lowest_q6_of_q3_left_down)),
+                    lowest_q6_of_q3_left_down,
+                )
+                centre_q6_of_q3_left_down = atan2(across_q6_of_q3_left_down, along_q6_of_q3_left_down)
+                angle_q6_of_q3_left_down = atan2(sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_down)
+                side_q6_of_q3_left_down = select(
+                    (
+                        along_q6_of_q3_left_down*sin_q6_before_q6_of_q3_left_down
+                        - across_q6_of_q3_left_down*cos_q6_before_q6_of_q3_left_down >= 0.0
+                    ),
+                    1.0,
+                    -1.0,
+                )
+                moved_q6_of_q3_left_down = nearest_on_arc(
+                    angle_q6_of_q3_left_down,
+                    (
+                        centre_q6_of_q3_left_down
+                        + 0.5*(far_q6_of_q3_left_down + near_q6_of_q3_left_down)*side_q6_of_q3_left_down
+                    ),
+                    0.5*far_q6_of_q3_left_down - 0.5*near_q6_of_q3_left_down,
+                )
+                cos_q6_after_q6_of_q3_left_down = cos(moved_q6_of_q3_left_down)
+                sin_q6_after_q6_of_q3_left_down = sin(moved_q6_of_q3_left_down)
+                # what the motion changes of the pose
+                cost_q6_of_q3_left_down = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down
+                        )*(cos_q6_after_q6_of_q3_left_down - cos_q6_before_q6_of_q3_left_down)
+                        + (
+                            sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down
+                        )*(sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down)
+                    )
+                    *radius_q6_left
+                )
+
+                def elsewhere_cos_q6_left_down(
+                    cos_q6_after_q6_of_q3_left_down: Real, sin_q6_after_q6_of_q3_left_down: Real,
+                ) -> Reals:
+                    cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
+                    sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
+                    return (cos_q6_left_down, sin_q6_left_down)
+
+                cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+                sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+                cos_q6_left_down, sin_q6_left_down = elsewhere(
+                    (cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left > 1e-11),
+                    (cos_q6_left_down, sin_q6_left_down),
+                    elsewhere_cos_q6_left_down,
+                    (cos_q6_after_q6_of_q3_left_down, sin_q6_after_q6_of_q3_left_down),
+                )
+                return (cos_q6_left_down, sin_q6_left_down)
+
+            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+            cos_q6_left_down, sin_q6_left_down = elsewhere(
                 absolute(value_q6_of_q3_left_down) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left > 1e-11), 1.0, 0.0),
-            )
-            # moved to where the rest can be reached
-            cos_q6_left_down = select(
-                radius_q6_left > 0.01,
-                cos_q6_before_q6_of_q3_left_down,
-                select(stays_q6_of_q3_left_down > 0.0, cos_q6_before_q6_of_q3_left_down, cos_q6_after_q6_of_q3_left_down),
-            )
-            # moved to where the rest can be reached
-            sin_q6_left_down = select(
-                radius_q6_left > 0.01,
-                sin_q6_before_q6_of_q3_left_down,
-                select(stays_q6_of_q3_left_down > 0.0, sin_q6_before_q6_of_q3_left_down, sin_q6_after_q6_of_q3_left_down),
+                (cos_q6_left_down, sin_q6_left_down),
+                elsewhere_cos_q6_left_down,
+                (
+                    cos_q6_before_q6_of_q3_left_down, radius_q6_left, sin_q6_before_q6_of_q3_left_down,
+                    value_q6_of_q3_left_down, wrist_x_from_q1_across_left, wrist_x_from_q1_along_left,
+                    wrist_x_from_q1_fixed_left_down, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                ),
             )
             wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
-            along_q6_of_q3_left_up = (
-                2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_left_up = (
-                2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_left_up = root(
-                across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
-            )
             wrist_x_from_q1_here_left_up = (
                 wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
                 + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_up
@@ -764,91 +798,141 @@ class ArrayPrograms(Programs):
                 wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
                 + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2*a2 - a3*a3
             )
-            level_q6_of_q3_left_up = (
-                value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
-            )
-            divisor_q6_of_q3_left_up = select(swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3, swing_q6_of_q3_left_up, 1.0)
-            # the arc: cosines from its centre
-            highest_q6_of_q3_left_up = select(
-                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_left_up)/divisor_q6_of_q3_left_up,
-                    ),
-                ),
-                1.0,
-            )
-            near_q6_of_q3_left_up = atan2(
-                root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
-                highest_q6_of_q3_left_up,
-            )
-            lowest_q6_of_q3_left_up = select(
-                swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_left_up - size_q6_of_q3)/divisor_q6_of_q3_left_up,
-                    ),
-                ),
-                -1.0,
-            )
-            far_q6_of_q3_left_up = atan2(
-                root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
-                lowest_q6_of_q3_left_up,
-            )
-            centre_q6_of_q3_left_up = atan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up)
-            angle_q6_of_q3_left_up = atan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up)
-            side_q6_of_q3_left_up = select(
-                (
-                    along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                    - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
-                ),
-                1.0,
-                -1.0,
-            )
-            moved_q6_of_q3_left_up = nearest_on_arc(
-                angle_q6_of_q3_left_up,
-                (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
-                0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
-            )
-            cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
-            sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
-            # what the motion changes of the pose
-            cost_q6_of_q3_left_up = (
-                root(
-                    (
-                        cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
-                    )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
-                    + (
-                        sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
-                    )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
+
+            def elsewhere_cos_q6_left_up(
+                cos_q6_before_q6_of_q3_left_up: Real, radius_q6_left: Real, sin_q6_before_q6_of_q3_left_up: Real,
+                value_q6_of_q3_left_up: Real, wrist_x_from_q1_across_left: Real, wrist_x_from_q1_along_left: Real,
+                wrist_x_from_q1_fixed_left_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+                wrist_y_from_q1_fixed: Real,
+            ) -> Reals:
+                along_q6_of_q3_left_up = (
+                    2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
+                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
-                *radius_q6_left
-            )
-            stays_q6_of_q3_left_up = select(
+                across_q6_of_q3_left_up = (
+                    2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
+                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                )
+                swing_q6_of_q3_left_up = sqrt(
+                    across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
+                )
+
+                def elsewhere_highest_q6_of_q3_left_up() -> Reals:
+                    highest_q6_of_q3_left_up = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_left_up = -1.0
+                    return (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up)
+
+                level_q6_of_q3_left_up = (
+                    value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
+                    - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
+                )
+                # the arc: cosines from its centre
+                highest_q6_of_q3_left_up = select(
+                    (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up,
+                    ),
+                )
+                lowest_q6_of_q3_left_up = select(
+                    (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up,
+                    ),
+                )
+                highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up = elsewhere(
+                    swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
+                    (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up),
+                    elsewhere_highest_q6_of_q3_left_up,
+                    (),
+                )
+                near_q6_of_q3_left_up = atan2(
+                    root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
+                    highest_q6_of_q3_left_up,
+                )
+                far_q6_of_q3_left_up = atan2(
+                    root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
+                    lowest_q6_of_q3_left_up,
+                )
+                centre_q6_of_q3_left_up = atan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up)
+                angle_q6_of_q3_left_up = atan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up)
+                side_q6_of_q3_left_up = select(
+                    (
+                        along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
+                        - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
+                    ),
+                    1.0,
+                    -1.0,
+                )
+                moved_q6_of_q3_left_up = nearest_on_arc(
+                    angle_q6_of_q3_left_up,
+                    (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
+                    0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
+                )
+                cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
+                sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
+                # what the motion changes of the pose
+                cost_q6_of_q3_left_up = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
+                        )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
+                        + (
+                            sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
+                        )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
+                    )
+                    *radius_q6_left
+                )
+
+                def elsewhere_cos_q6_left_up(
+                    cos_q6_after_q6_of_q3_left_up: Real, sin_q6_after_q6_of_q3_left_up: Real,
+                ) -> Reals:
+                    cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
+                    sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
+                    return (cos_q6_left_up, sin_q6_left_up)
+
+                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+                cos_q6_left_up, sin_q6_left_up = elsewhere(
+                    (cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left > 1e-11),
+                    (cos_q6_left_up, sin_q6_left_up),
+                    elsewhere_cos_q6_left_up,
+                    (cos_q6_after_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up),
+                )
+                return (cos_q6_left_up, sin_q6_left_up)
+
+            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+            cos_q6_left_up, sin_q6_left_up = elsewhere(
                 absolute(value_q6_of_q3_left_up) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left > 1e-11), 1.0, 0.0),
+                (cos_q6_left_up, sin_q6_left_up),
+                elsewhere_cos_q6_left_up,
+                (
+                    cos_q6_before_q6_of_q3_left_up, radius_q6_left, sin_q6_before_q6_of_q3_left_up,
+                    value_q6_of_q3_left_up, wrist_x_from_q1_across_left, wrist_x_from_q1_along_left,
+                    wrist_x_from_q1_fixed_left_up, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                ),
             )
-            # moved to where the rest can be reached
-            cos_q6_left_up = select(
-                radius_q6_left > 0.01,
-                cos_q6_before_q6_of_q3_left_up,
-                select(stays_q6_of_q3_left_up > 0.0, cos_q6_before_q6_of_q3_left_up, cos_q6_after_q6_of_q3_left_up),
-            )
-            # moved to where the rest can be reached
-            sin_q6_left_up = select(
-                radius_q6_left > 0.01,
-                sin_q6_before_q6_of_q3_left_up,
-                select(stays_q6_of_q3_left_up > 0.0, sin_q6_before_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up),
-            )
+            return (cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up)
+
+        cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+        sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+        cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+        sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
+        cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up = elsewhere(
+            radius_q6_left > 0.01,
+            (cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up),
+            elsewhere_cos_q6_left_down,
+            (
+                cos_q1_left, cos_q5_left, cos_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up, r31, r32,
+                r33, radius_q6_left, sin_q1_left, sin_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_up,
+                wrist_x, wrist_y, wrist_z,
+            ),
+        )
         r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
         r21_from_q1_before_q56_left_down = r21_from_q1_before_q6_left_down*cos_q5_left - r33*radius_q6_left
         # what the unknown links must span
@@ -856,7 +940,7 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
         # what the unknown links must span
         wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
-        reach_left_down = root(
+        reach_left_down = sqrt(
             wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
         )
         # kept as a product
@@ -871,52 +955,52 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_q1_left, cos_q1_left)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + degrees(sin_q1_left, cos_q1_left), near_a1)  # A1: its turn
         cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
         sin_q3_left_up_down = root(sine_square_q3_left_down)
-        if everywhere(reach_left_down > 1e-11*machine_scale):
-            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_left_up_down = (
-                arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
-            )
-            direction_y_q2_left_up_down = (
-                arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_left_down_down = (
-                arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
-            )
-            direction_y_q2_left_down_down = (
-                arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
-            )
-        else:
+
+        def elsewhere_direction_x_q2_left_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_left_down = a2 + a3*cos_q3_left_down
-            arm_across_q2_left_up_down = a3*sin_q3_left_up_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_left_up_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                (arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down),
-                cos(free_a2),
-            )
-            direction_y_q2_left_up_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                (arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down),
-                sin(free_a2),
-            )
+            direction_x_q2_left_up_down = cos(free_a2)
+            direction_y_q2_left_up_down = sin(free_a2)
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_left_down_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                (arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down),
-                cos(free_a2),
+            direction_x_q2_left_down_down = direction_x_q2_left_up_down
+            direction_y_q2_left_down_down = direction_y_q2_left_up_down
+            return (
+                direction_x_q2_left_up_down, direction_y_q2_left_up_down, direction_x_q2_left_down_down,
+                direction_y_q2_left_down_down,
             )
-            direction_y_q2_left_down_down = select(
-                reach_left_down > 1e-11*machine_scale,
-                (arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down),
-                sin(free_a2),
-            )
+
+        arm_along_q2_left_down = a2 + a3*cos_q3_left_down
+        arm_across_q2_left_up_down = a3*sin_q3_left_up_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_left_up_down = (
+            arm_across_q2_left_up_down*wrist_y_from_q1_left_down + arm_along_q2_left_down*wrist_x_from_q1_left_down
+        )
+        direction_y_q2_left_up_down = (
+            arm_along_q2_left_down*wrist_y_from_q1_left_down - arm_across_q2_left_up_down*wrist_x_from_q1_left_down
+        )
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_left_down_down = (
+            arm_along_q2_left_down*wrist_x_from_q1_left_down - arm_across_q2_left_up_down*wrist_y_from_q1_left_down
+        )
+        direction_y_q2_left_down_down = (
+            arm_across_q2_left_up_down*wrist_x_from_q1_left_down + arm_along_q2_left_down*wrist_y_from_q1_left_down
+        )
+        found = elsewhere(
+            reach_left_down > 1e-11*machine_scale,
+            (
+                direction_x_q2_left_up_down, direction_y_q2_left_up_down, direction_x_q2_left_down_down,
+                direction_y_q2_left_down_down,
+            ),
+            elsewhere_direction_x_q2_left_up_down,
+            (ref_a2,),
+        )
+        (
+            direction_x_q2_left_up_down, direction_y_q2_left_up_down, direction_x_q2_left_down_down,
+            direction_y_q2_left_down_down,
+        ) = found
         angle_q2_left_up_down = atan2(direction_y_q2_left_up_down, direction_x_q2_left_up_down)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
@@ -950,8 +1034,7 @@ class ArrayPrograms(Programs):
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        # A5: its turn
-        axis_a5_left_down = nearest_period(offset_a5 + atan2(radius_q6_left, cos_q5_left)/DEGREE, near_a5)
+        axis_a5_left_down = nearest_period(offset_a5 + degrees(radius_q6_left, cos_q5_left), near_a5)  # A5: its turn
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
@@ -959,14 +1042,14 @@ class ArrayPrograms(Programs):
             open_a6,
         )
         # A6: its turn
-        axis_a6_left_down = nearest_period(offset_a6 + atan2(sin_q6_left_down, cos_q6_left_down)/DEGREE, near_a6)
+        axis_a6_left_down = nearest_period(offset_a6 + degrees(sin_q6_left_down, cos_q6_left_down), near_a6)
         r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
         r21_from_q1_before_q56_left_up = r21_from_q1_before_q6_left_up*cos_q5_left + r33*radius_q6_left
         # what the unknown links must span
         wrist_x_from_q1_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_up
         r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
         wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
-        reach_left_up = root(
+        reach_left_up = sqrt(
             wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
         )
         # kept as a product
@@ -977,49 +1060,49 @@ class ArrayPrograms(Programs):
         refusal_left_up = select(sine_square_q3_left_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
         cos_q3_left_up = (reach_left_up*reach_left_up - a2*a2 - a3*a3)/scale_q3
         sin_q3_left_up_up = root(sine_square_q3_left_up)
-        if everywhere(reach_left_up > 1e-11*machine_scale):
-            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_left_up_up = (
-                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
-            )
-            direction_y_q2_left_up_up = (
-                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_left_down_up = (
-                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
-            )
-            direction_y_q2_left_down_up = (
-                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
-            )
-        else:
+
+        def elsewhere_direction_x_q2_left_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_left_up = a2 + a3*cos_q3_left_up
-            arm_across_q2_left_up_up = a3*sin_q3_left_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_left_up_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up,
-                cos(free_a2),
-            )
-            direction_y_q2_left_up_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up,
-                sin(free_a2),
-            )
+            direction_x_q2_left_up_up = cos(free_a2)
+            direction_y_q2_left_up_up = sin(free_a2)
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_left_down_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up,
-                cos(free_a2),
+            direction_x_q2_left_down_up = direction_x_q2_left_up_up
+            direction_y_q2_left_down_up = direction_y_q2_left_up_up
+            return (
+                direction_x_q2_left_up_up, direction_y_q2_left_up_up, direction_x_q2_left_down_up,
+                direction_y_q2_left_down_up,
             )
-            direction_y_q2_left_down_up = select(
-                reach_left_up > 1e-11*machine_scale,
-                arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up,
-                sin(free_a2),
-            )
+
+        arm_along_q2_left_up = a2 + a3*cos_q3_left_up
+        arm_across_q2_left_up_up = a3*sin_q3_left_up_up
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_left_up_up = (
+            arm_across_q2_left_up_up*wrist_y_from_q1_left_up + arm_along_q2_left_up*wrist_x_from_q1_left_up
+        )
+        direction_y_q2_left_up_up = (
+            arm_along_q2_left_up*wrist_y_from_q1_left_up - arm_across_q2_left_up_up*wrist_x_from_q1_left_up
+        )
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_left_down_up = (
+            arm_along_q2_left_up*wrist_x_from_q1_left_up - arm_across_q2_left_up_up*wrist_y_from_q1_left_up
+        )
+        direction_y_q2_left_down_up = (
+            arm_across_q2_left_up_up*wrist_x_from_q1_left_up + arm_along_q2_left_up*wrist_y_from_q1_left_up
+        )
+        found = elsewhere(
+            reach_left_up > 1e-11*machine_scale,
+            (
+                direction_x_q2_left_up_up, direction_y_q2_left_up_up, direction_x_q2_left_down_up,
+                direction_y_q2_left_down_up,
+            ),
+            elsewhere_direction_x_q2_left_up_up,
+            (ref_a2,),
+        )
+        (
+            direction_x_q2_left_up_up, direction_y_q2_left_up_up, direction_x_q2_left_down_up,
+            direction_y_q2_left_down_up,
+        ) = found
         angle_q2_left_up_up = atan2(direction_y_q2_left_up_up, direction_x_q2_left_up_up)
         axis_a2_left_up_up = nearest_period(offset_a2 + angle_q2_left_up_up/DEGREE, near_a2)  # A2: its turn
         angle_q3_left_up_up = atan2(sin_q3_left_up_up, cos_q3_left_up)
@@ -1029,10 +1112,8 @@ class ArrayPrograms(Programs):
         axis_a4_left_up_up = nearest_period(
             offset_a4 + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up)/DEGREE, near_a4,
         )
-        # A5: its turn
-        axis_a5_left_up = nearest_period(offset_a5 + atan2(-radius_q6_left, cos_q5_left)/DEGREE, near_a5)
-        # A6: its turn
-        axis_a6_left_up = nearest_period(offset_a6 + atan2(sin_q6_left_up, cos_q6_left_up)/DEGREE, near_a6)
+        axis_a5_left_up = nearest_period(offset_a5 + degrees(-radius_q6_left, cos_q5_left), near_a5)  # A5: its turn
+        axis_a6_left_up = nearest_period(offset_a6 + degrees(sin_q6_left_up, cos_q6_left_up), near_a6)  # A6: its turn
         angle_q2_left_down_down = atan2(direction_y_q2_left_down_down, direction_x_q2_left_down_down)
         axis_a2_left_down_down = nearest_period(offset_a2 + angle_q2_left_down_down/DEGREE, near_a2)  # A2: its turn
         angle_q3_left_down_down = atan2(-sin_q3_left_up_down, cos_q3_left_down)
@@ -1052,62 +1133,50 @@ class ArrayPrograms(Programs):
         r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
         r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
         # q6: direction and distance of a point
-        radius_q6_right = root(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
+        radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
         cos_q5_right = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
-        if everywhere(radius_q6_right > 1e-11):
-            cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
-            cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down
-        else:
+
+        def elsewhere_cos_q6_before_q6_of_q3_right_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            length_q6_right = select(radius_q6_right > 1e-11, radius_q6_right, 1.0)
-            # its reference where it is free
-            cos_q6_before_q6_of_q3_right_down = select(
-                radius_q6_right > 1e-11,
-                -r21_from_q1_right/length_q6_right,
-                cos(free_a6),
+            cos_q6_before_q6_of_q3_right_down = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_down = sin(free_a6)
+            cos_q6_before_q6_of_q3_right_up = cos_q6_before_q6_of_q3_right_down  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_up = sin_q6_before_q6_of_q3_right_down
+            return (
+                cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up,
+                sin_q6_before_q6_of_q3_right_up,
             )
-            sin_q6_before_q6_of_q3_right_down = select(
-                radius_q6_right > 1e-11,
-                r22_from_q1_right/length_q6_right,
-                sin(free_a6),
-            )
-            # its reference where it is free
-            cos_q6_before_q6_of_q3_right_up = select(
-                radius_q6_right > 1e-11,
-                r21_from_q1_right/length_q6_right,
-                cos(free_a6),
-            )
-            sin_q6_before_q6_of_q3_right_up = select(
-                radius_q6_right > 1e-11,
-                -r22_from_q1_right/length_q6_right,
-                sin(free_a6),
-            )
-        if everywhere(radius_q6_right > 0.01):
-            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-        else:
+
+        cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
+        sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
+        cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down  # its reference where it is free
+        sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down
+        found = elsewhere(
+            radius_q6_right > 1e-11,
+            (
+                cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up,
+                sin_q6_before_q6_of_q3_right_up,
+            ),
+            elsewhere_cos_q6_before_q6_of_q3_right_down,
+            (ref_a6,),
+        )
+        (
+            cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up,
+            sin_q6_before_q6_of_q3_right_up,
+        ) = found
+
+        def elsewhere_cos_q6_right_down(
+            cos_q1_right: Real, cos_q5_right: Real, cos_q6_before_q6_of_q3_right_down: Real,
+            cos_q6_before_q6_of_q3_right_up: Real, r31: Real, r32: Real, r33: Real, radius_q6_right: Real,
+            sin_q1_right: Real, sin_q6_before_q6_of_q3_right_down: Real, sin_q6_before_q6_of_q3_right_up: Real,
+            wrist_x: Real, wrist_y: Real, wrist_z: Real,
+        ) -> Reals:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_across = d5*r31
             wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
             wrist_x_from_q1_along_right = -d5*r31*cos_q5_right
-            along_q6_of_q3_right_down = (
-                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
             wrist_x_from_q1_across_right = d5*r32*cos_q5_right
-            across_q6_of_q3_right_down = (
-                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_right_down = root(
-                across_q6_of_q3_right_down*across_q6_of_q3_right_down
-                + along_q6_of_q3_right_down*along_q6_of_q3_right_down
-            )
             wrist_x_from_q1_here_right_down = (
                 wrist_x_from_q1_fixed_right_down + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_down
                 + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_down
@@ -1121,112 +1190,131 @@ class ArrayPrograms(Programs):
                 wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
                 + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2*a2 - a3*a3
             )
-            level_q6_of_q3_right_down = (
-                value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
-                - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
-            )
-            divisor_q6_of_q3_right_down = select(
-                swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3, swing_q6_of_q3_right_down, 1.0,
-            )
-            # the arc: cosines from its centre
-            highest_q6_of_q3_right_down = select(
-                swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3_right_down)/divisor_q6_of_q3_right_down > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3_right_down)/divisor_q6_of_q3_right_down < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_right_down)/divisor_q6_of_q3_right_down,
-                    ),
-                ),
-                1.0,
-            )
-            near_q6_of_q3_right_down = atan2(
-                root((1.0 - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)),
-                highest_q6_of_q3_right_down,
-            )
-            lowest_q6_of_q3_right_down = select(
-                swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3_right_down - size_q6_of_q3)/divisor_q6_of_q3_right_down > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3_right_down - size_q6_of_q3)/divisor_q6_of_q3_right_down < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_right_down - size_q6_of_q3)/divisor_q6_of_q3_right_down,
-                    ),
-                ),
-                -1.0,
-            )
-            far_q6_of_q3_right_down = atan2(
-                root((1.0 - lowest_q6_of_q3_right_down)*(1.0 + lowest_q6_of_q3_right_down)),
-                lowest_q6_of_q3_right_down,
-            )
-            centre_q6_of_q3_right_down = atan2(across_q6_of_q3_right_down, along_q6_of_q3_right_down)
-            angle_q6_of_q3_right_down = atan2(sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_down)
-            side_q6_of_q3_right_down = select(
-                (
-                    along_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
-                    - across_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down >= 0.0
-                ),
-                1.0,
-                -1.0,
-            )
-            moved_q6_of_q3_right_down = nearest_on_arc(
-                angle_q6_of_q3_right_down,
-                (
-                    centre_q6_of_q3_right_down
-                    + 0.5*(far_q6_of_q3_right_down + near_q6_of_q3_right_down)*side_q6_of_q3_right_down
-                ),
-                0.5*far_q6_of_q3_right_down - 0.5*near_q6_of_q3_right_down,
-            )
-            cos_q6_after_q6_of_q3_right_down = cos(moved_q6_of_q3_right_down)
-            sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
-            # what the motion changes of the pose
-            cost_q6_of_q3_right_down = (
-                root(
-                    (
-                        cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
-                    )*(cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down)
-                    + (
-                        sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
-                    )*(sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down)
+
+            def elsewhere_cos_q6_right_down(
+                cos_q6_before_q6_of_q3_right_down: Real, radius_q6_right: Real, sin_q6_before_q6_of_q3_right_down: Real,
+                value_q6_of_q3_right_down: Real, wrist_x_from_q1_across_right: Real, wrist_x_from_q1_along_right: Real,
+                wrist_x_from_q1_fixed_right_down: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+                wrist_y_from_q1_fixed: Real,
+            ) -> Reals:
+                along_q6_of_q3_right_down = (
+                    2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
+                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
-                *radius_q6_right
-            )
-            stays_q6_of_q3_right_down = select(
+                across_q6_of_q3_right_down = (
+                    2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down
+                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                )
+                swing_q6_of_q3_right_down = sqrt(
+                    across_q6_of_q3_right_down*across_q6_of_q3_right_down
+                    + along_q6_of_q3_right_down*along_q6_of_q3_right_down
+                )
+
+                def elsewhere_highest_q6_of_q3_right_down() -> Reals:
+                    highest_q6_of_q3_right_down = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_right_down = -1.0
+                    return (highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down)
+
+                level_q6_of_q3_right_down = (
+                    value_q6_of_q3_right_down - across_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
+                    - along_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down
+                )
+                # the arc: cosines from its centre
+                highest_q6_of_q3_right_down = select(
+                    (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down,
+                    ),
+                )
+                lowest_q6_of_q3_right_down = select(
+                    (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down,
+                    ),
+                )
+                highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down = elsewhere(
+                    swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3,
+                    (highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down),
+                    elsewhere_highest_q6_of_q3_right_down,
+                    (),
+                )
+                near_q6_of_q3_right_down = atan2(
+                    root((1.0 - highest_q6_of_q3_right_down)*(1.0 + highest_q6_of_q3_right_down)),
+                    highest_q6_of_q3_right_down,
+                )
+                far_q6_of_q3_right_down = atan2(
+                    root((1.0 - lowest_q6_of_q3_right_down)*(1.0 + lowest_q6_of_q3_right_down)),
+                    lowest_q6_of_q3_right_down,
+                )
+                centre_q6_of_q3_right_down = atan2(across_q6_of_q3_right_down, along_q6_of_q3_right_down)
+                angle_q6_of_q3_right_down = atan2(sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_down)
+                side_q6_of_q3_right_down = select(
+                    (
+                        along_q6_of_q3_right_down*sin_q6_before_q6_of_q3_right_down
+                        - across_q6_of_q3_right_down*cos_q6_before_q6_of_q3_right_down >= 0.0
+                    ),
+                    1.0,
+                    -1.0,
+                )
+                moved_q6_of_q3_right_down = nearest_on_arc(
+                    angle_q6_of_q3_right_down,
+                    (
+                        centre_q6_of_q3_right_down
+                        + 0.5*(far_q6_of_q3_right_down + near_q6_of_q3_right_down)*side_q6_of_q3_right_down
+                    ),
+                    0.5*far_q6_of_q3_right_down - 0.5*near_q6_of_q3_right_down,
+                )
+                cos_q6_after_q6_of_q3_right_down = cos(moved_q6_of_q3_right_down)
+                sin_q6_after_q6_of_q3_right_down = sin(moved_q6_of_q3_right_down)
+                # what the motion changes of the pose
+                cost_q6_of_q3_right_down = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down
+                        )*(cos_q6_after_q6_of_q3_right_down - cos_q6_before_q6_of_q3_right_down)
+                        + (
+                            sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
+                        )*(sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down)
+                    )
+                    *radius_q6_right
+                )
+
+                def elsewhere_cos_q6_right_down(
+                    cos_q6_after_q6_of_q3_right_down: Real, sin_q6_after_q6_of_q3_right_down: Real,
+                ) -> Reals:
+                    cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
+                    sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
+                    return (cos_q6_right_down, sin_q6_right_down)
+
+                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+                cos_q6_right_down, sin_q6_right_down = elsewhere(
+                    (cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right > 1e-11),
+                    (cos_q6_right_down, sin_q6_right_down),
+                    elsewhere_cos_q6_right_down,
+                    (cos_q6_after_q6_of_q3_right_down, sin_q6_after_q6_of_q3_right_down),
+                )
+                return (cos_q6_right_down, sin_q6_right_down)
+
+            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            cos_q6_right_down, sin_q6_right_down = elsewhere(
                 absolute(value_q6_of_q3_right_down) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right > 1e-11), 1.0, 0.0),
-            )
-            # moved to where the rest can be reached
-            cos_q6_right_down = select(
-                radius_q6_right > 0.01,
-                cos_q6_before_q6_of_q3_right_down,
-                select(
-                    stays_q6_of_q3_right_down > 0.0, cos_q6_before_q6_of_q3_right_down, cos_q6_after_q6_of_q3_right_down,
-                ),
-            )
-            # moved to where the rest can be reached
-            sin_q6_right_down = select(
-                radius_q6_right > 0.01,
-                sin_q6_before_q6_of_q3_right_down,
-                select(
-                    stays_q6_of_q3_right_down > 0.0, sin_q6_before_q6_of_q3_right_down, sin_q6_after_q6_of_q3_right_down,
+                (cos_q6_right_down, sin_q6_right_down),
+                elsewhere_cos_q6_right_down,
+                (
+                    cos_q6_before_q6_of_q3_right_down, radius_q6_right, sin_q6_before_q6_of_q3_right_down,
+                    value_q6_of_q3_right_down, wrist_x_from_q1_across_right, wrist_x_from_q1_along_right,
+                    wrist_x_from_q1_fixed_right_down, wrist_y_from_q1_across, wrist_y_from_q1_along,
+                    wrist_y_from_q1_fixed,
                 ),
             )
             wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
-            along_q6_of_q3_right_up = (
-                2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
-                + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-            )
-            across_q6_of_q3_right_up = (
-                2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
-                + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            )
-            swing_q6_of_q3_right_up = root(
-                across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
-            )
             wrist_x_from_q1_here_right_up = (
                 wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
                 + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
@@ -1240,93 +1328,141 @@ class ArrayPrograms(Programs):
                 wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
                 + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
             )
-            level_q6_of_q3_right_up = (
-                value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
-                - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
-            )
-            divisor_q6_of_q3_right_up = select(
-                swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3, swing_q6_of_q3_right_up, 1.0,
-            )
-            # the arc: cosines from its centre
-            highest_q6_of_q3_right_up = select(
-                swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3,
-                select(
-                    (size_q6_of_q3 - level_q6_of_q3_right_up)/divisor_q6_of_q3_right_up > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3_right_up)/divisor_q6_of_q3_right_up < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_right_up)/divisor_q6_of_q3_right_up,
-                    ),
-                ),
-                1.0,
-            )
-            near_q6_of_q3_right_up = atan2(
-                root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)),
-                highest_q6_of_q3_right_up,
-            )
-            lowest_q6_of_q3_right_up = select(
-                swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3,
-                select(
-                    (-level_q6_of_q3_right_up - size_q6_of_q3)/divisor_q6_of_q3_right_up > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3_right_up - size_q6_of_q3)/divisor_q6_of_q3_right_up < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_right_up - size_q6_of_q3)/divisor_q6_of_q3_right_up,
-                    ),
-                ),
-                -1.0,
-            )
-            far_q6_of_q3_right_up = atan2(
-                root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)),
-                lowest_q6_of_q3_right_up,
-            )
-            centre_q6_of_q3_right_up = atan2(across_q6_of_q3_right_up, along_q6_of_q3_right_up)
-            angle_q6_of_q3_right_up = atan2(sin_q6_before_q6_of_q3_right_up, cos_q6_before_q6_of_q3_right_up)
-            side_q6_of_q3_right_up = select(
-                (
-                    along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
-                    - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0
-                ),
-                1.0,
-                -1.0,
-            )
-            moved_q6_of_q3_right_up = nearest_on_arc(
-                angle_q6_of_q3_right_up,
-                (centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)*side_q6_of_q3_right_up),
-                0.5*far_q6_of_q3_right_up - 0.5*near_q6_of_q3_right_up,
-            )
-            cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
-            sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
-            # what the motion changes of the pose
-            cost_q6_of_q3_right_up = (
-                root(
-                    (
-                        cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
-                    )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
-                    + (
-                        sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
-                    )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
+
+            def elsewhere_cos_q6_right_up(
+                cos_q6_before_q6_of_q3_right_up: Real, radius_q6_right: Real, sin_q6_before_q6_of_q3_right_up: Real,
+                value_q6_of_q3_right_up: Real, wrist_x_from_q1_across_right: Real, wrist_x_from_q1_along_right: Real,
+                wrist_x_from_q1_fixed_right_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+                wrist_y_from_q1_fixed: Real,
+            ) -> Reals:
+                along_q6_of_q3_right_up = (
+                    2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
+                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
-                *radius_q6_right
-            )
-            stays_q6_of_q3_right_up = select(
+                across_q6_of_q3_right_up = (
+                    2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
+                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                )
+                swing_q6_of_q3_right_up = sqrt(
+                    across_q6_of_q3_right_up*across_q6_of_q3_right_up + along_q6_of_q3_right_up*along_q6_of_q3_right_up
+                )
+
+                def elsewhere_highest_q6_of_q3_right_up() -> Reals:
+                    highest_q6_of_q3_right_up = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_right_up = -1.0
+                    return (highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up)
+
+                level_q6_of_q3_right_up = (
+                    value_q6_of_q3_right_up - across_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
+                    - along_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up
+                )
+                # the arc: cosines from its centre
+                highest_q6_of_q3_right_up = select(
+                    (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up,
+                    ),
+                )
+                lowest_q6_of_q3_right_up = select(
+                    (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up,
+                    ),
+                )
+                highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up = elsewhere(
+                    swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3,
+                    (highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up),
+                    elsewhere_highest_q6_of_q3_right_up,
+                    (),
+                )
+                near_q6_of_q3_right_up = atan2(
+                    root((1.0 - highest_q6_of_q3_right_up)*(1.0 + highest_q6_of_q3_right_up)),
+                    highest_q6_of_q3_right_up,
+                )
+                far_q6_of_q3_right_up = atan2(
+                    root((1.0 - lowest_q6_of_q3_right_up)*(1.0 + lowest_q6_of_q3_right_up)),
+                    lowest_q6_of_q3_right_up,
+                )
+                centre_q6_of_q3_right_up = atan2(across_q6_of_q3_right_up, along_q6_of_q3_right_up)
+                angle_q6_of_q3_right_up = atan2(sin_q6_before_q6_of_q3_right_up, cos_q6_before_q6_of_q3_right_up)
+                side_q6_of_q3_right_up = select(
+                    (
+                        along_q6_of_q3_right_up*sin_q6_before_q6_of_q3_right_up
+                        - across_q6_of_q3_right_up*cos_q6_before_q6_of_q3_right_up >= 0.0
+                    ),
+                    1.0,
+                    -1.0,
+                )
+                moved_q6_of_q3_right_up = nearest_on_arc(
+                    angle_q6_of_q3_right_up,
+                    (centre_q6_of_q3_right_up + 0.5*(far_q6_of_q3_right_up + near_q6_of_q3_right_up)*side_q6_of_q3_right_up),
+                    0.5*far_q6_of_q3_right_up - 0.5*near_q6_of_q3_right_up,
+                )
+                cos_q6_after_q6_of_q3_right_up = cos(moved_q6_of_q3_right_up)
+                sin_q6_after_q6_of_q3_right_up = sin(moved_q6_of_q3_right_up)
+                # what the motion changes of the pose
+                cost_q6_of_q3_right_up = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up
+                        )*(cos_q6_after_q6_of_q3_right_up - cos_q6_before_q6_of_q3_right_up)
+                        + (
+                            sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
+                        )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
+                    )
+                    *radius_q6_right
+                )
+
+                def elsewhere_cos_q6_right_up(
+                    cos_q6_after_q6_of_q3_right_up: Real, sin_q6_after_q6_of_q3_right_up: Real,
+                ) -> Reals:
+                    cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
+                    sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
+                    return (cos_q6_right_up, sin_q6_right_up)
+
+                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+                cos_q6_right_up, sin_q6_right_up = elsewhere(
+                    (cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right > 1e-11),
+                    (cos_q6_right_up, sin_q6_right_up),
+                    elsewhere_cos_q6_right_up,
+                    (cos_q6_after_q6_of_q3_right_up, sin_q6_after_q6_of_q3_right_up),
+                )
+                return (cos_q6_right_up, sin_q6_right_up)
+
+            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            cos_q6_right_up, sin_q6_right_up = elsewhere(
                 absolute(value_q6_of_q3_right_up) <= size_q6_of_q3,
-                1.0,
-                select((cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right > 1e-11), 1.0, 0.0),
+                (cos_q6_right_up, sin_q6_right_up),
+                elsewhere_cos_q6_right_up,
+                (
+                    cos_q6_before_q6_of_q3_right_up, radius_q6_right, sin_q6_before_q6_of_q3_right_up,
+                    value_q6_of_q3_right_up, wrist_x_from_q1_across_right, wrist_x_from_q1_along_right,
+                    wrist_x_from_q1_fixed_right_up, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                ),
             )
-            # moved to where the rest can be reached
-            cos_q6_right_up = select(
-                radius_q6_right > 0.01,
-                cos_q6_before_q6_of_q3_right_up,
-                select(stays_q6_of_q3_right_up > 0.0, cos_q6_before_q6_of_q3_right_up, cos_q6_after_q6_of_q3_right_up),
-            )
-            # moved to where the rest can be reached
-            sin_q6_right_up = select(
-                radius_q6_right > 0.01,
-                sin_q6_before_q6_of_q3_right_up,
-                select(stays_q6_of_q3_right_up > 0.0, sin_q6_before_q6_of_q3_right_up, sin_q6_after_q6_of_q3_right_up),
-            )
+            return (cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up)
+
+        cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+        sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+        cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+        sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+        cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up = elsewhere(
+            radius_q6_right > 0.01,
+            (cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up),
+            elsewhere_cos_q6_right_down,
+            (
+                cos_q1_right, cos_q5_right, cos_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up, r31,
+                r32, r33, radius_q6_right, sin_q1_right, sin_q6_before_q6_of_q3_right_down,
+                sin_q6_before_q6_of_q3_right_up, wrist_x, wrist_y, wrist_z,
+            ),
+        )
         r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
         r21_from_q1_before_q56_right_down = r21_from_q1_before_q6_right_down*cos_q5_right - r33*radius_q6_right
         # what the unknown links must span
@@ -1336,7 +1472,7 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
         # what the unknown links must span
         wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
-        reach_right_down = root(
+        reach_right_down = sqrt(
             wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
             + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
         )
@@ -1346,68 +1482,56 @@ class ArrayPrograms(Programs):
             *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
         )
         refusal_right_down = select(sine_square_q3_right_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_q1_right, cos_q1_right)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_right = nearest_period(offset_a1 + degrees(sin_q1_right, cos_q1_right), near_a1)  # A1: its turn
         cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
         sin_q3_right_up_down = root(sine_square_q3_right_down)
-        if everywhere(reach_right_down > 1e-11*machine_scale):
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_right_up_down = (
-                arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                + arm_along_q2_right_down*wrist_x_from_q1_right_down
-            )
-            direction_y_q2_right_up_down = (
-                arm_along_q2_right_down*wrist_y_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_right_down_down = (
-                arm_along_q2_right_down*wrist_x_from_q1_right_down
-                - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            )
-            direction_y_q2_right_down_down = (
-                arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                + arm_along_q2_right_down*wrist_y_from_q1_right_down
-            )
-        else:
+
+        def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-            arm_across_q2_right_up_down = a3*sin_q3_right_up_down
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_right_up_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                (
-                    arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                    + arm_along_q2_right_down*wrist_x_from_q1_right_down
-                ),
-                cos(free_a2),
-            )
-            direction_y_q2_right_up_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                (
-                    arm_along_q2_right_down*wrist_y_from_q1_right_down
-                    - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                ),
-                sin(free_a2),
-            )
+            direction_x_q2_right_up_down = cos(free_a2)
+            direction_y_q2_right_up_down = sin(free_a2)
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_right_down_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                (
-                    arm_along_q2_right_down*wrist_x_from_q1_right_down
-                    - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-                ),
-                cos(free_a2),
+            direction_x_q2_right_down_down = direction_x_q2_right_up_down
+            direction_y_q2_right_down_down = direction_y_q2_right_up_down
+            return (
+                direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
+                direction_y_q2_right_down_down,
             )
-            direction_y_q2_right_down_down = select(
-                reach_right_down > 1e-11*machine_scale,
-                (
-                    arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-                    + arm_along_q2_right_down*wrist_y_from_q1_right_down
-                ),
-                sin(free_a2),
-            )
+
+        arm_along_q2_right_down = a2 + a3*cos_q3_right_down
+        arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_right_up_down = (
+            arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+            + arm_along_q2_right_down*wrist_x_from_q1_right_down
+        )
+        direction_y_q2_right_up_down = (
+            arm_along_q2_right_down*wrist_y_from_q1_right_down
+            - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+        )
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_right_down_down = (
+            arm_along_q2_right_down*wrist_x_from_q1_right_down
+            - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+        )
+        direction_y_q2_right_down_down = (
+            arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+            + arm_along_q2_right_down*wrist_y_from_q1_right_down
+        )
+        found = elsewhere(
+            reach_right_down > 1e-11*machine_scale,
+            (
+                direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
+                direction_y_q2_right_down_down,
+            ),
+            elsewhere_direction_x_q2_right_up_down,
+            (ref_a2,),
+        )
+        (
+            direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
+            direction_y_q2_right_down_down,
+        ) = found
         angle_q2_right_up_down = atan2(direction_y_q2_right_up_down, direction_x_q2_right_up_down)
         axis_a2_right_up_down = nearest_period(offset_a2 + angle_q2_right_up_down/DEGREE, near_a2)  # A2: its turn
         angle_q3_right_up_down = atan2(sin_q3_right_up_down, cos_q3_right_down)
@@ -1418,9 +1542,9 @@ class ArrayPrograms(Programs):
             offset_a4 + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down)/DEGREE, near_a4,
         )
         # A5: its turn
-        axis_a5_right_down = nearest_period(offset_a5 + atan2(radius_q6_right, cos_q5_right)/DEGREE, near_a5)
+        axis_a5_right_down = nearest_period(offset_a5 + degrees(radius_q6_right, cos_q5_right), near_a5)
         # A6: its turn
-        axis_a6_right_down = nearest_period(offset_a6 + atan2(sin_q6_right_down, cos_q6_right_down)/DEGREE, near_a6)
+        axis_a6_right_down = nearest_period(offset_a6 + degrees(sin_q6_right_down, cos_q6_right_down), near_a6)
         r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
         r21_from_q1_before_q56_right_up = r21_from_q1_before_q6_right_up*cos_q5_right + r33*radius_q6_right
         # what the unknown links must span
@@ -1428,7 +1552,7 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
         # what the unknown links must span
         wrist_y_from_q1_right_up = wrist_z + d5*r22_from_q1_before_q6_right_up - d1
-        reach_right_up = root(
+        reach_right_up = sqrt(
             wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
         )
         # kept as a product
@@ -1439,49 +1563,49 @@ class ArrayPrograms(Programs):
         refusal_right_up = select(sine_square_q3_right_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
         cos_q3_right_up = (reach_right_up*reach_right_up - a2*a2 - a3*a3)/scale_q3
         sin_q3_right_up_up = root(sine_square_q3_right_up)
-        if everywhere(reach_right_up > 1e-11*machine_scale):
-            arm_along_q2_right_up = a2 + a3*cos_q3_right_up
-            arm_across_q2_right_up_up = a3*sin_q3_right_up_up
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_right_up_up = (
-                arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
-            )
-            direction_y_q2_right_up_up = (
-                arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_right_down_up = (
-                arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
-            )
-            direction_y_q2_right_down_up = (
-                arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
-            )
-        else:
+
+        def elsewhere_direction_x_q2_right_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_right_up = a2 + a3*cos_q3_right_up
-            arm_across_q2_right_up_up = a3*sin_q3_right_up_up
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_right_up_up = select(
-                reach_right_up > 1e-11*machine_scale,
-                (arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up),
-                cos(free_a2),
-            )
-            direction_y_q2_right_up_up = select(
-                reach_right_up > 1e-11*machine_scale,
-                (arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up),
-                sin(free_a2),
-            )
+            direction_x_q2_right_up_up = cos(free_a2)
+            direction_y_q2_right_up_up = sin(free_a2)
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_right_down_up = select(
-                reach_right_up > 1e-11*machine_scale,
-                (arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up),
-                cos(free_a2),
+            direction_x_q2_right_down_up = direction_x_q2_right_up_up
+            direction_y_q2_right_down_up = direction_y_q2_right_up_up
+            return (
+                direction_x_q2_right_up_up, direction_y_q2_right_up_up, direction_x_q2_right_down_up,
+                direction_y_q2_right_down_up,
             )
-            direction_y_q2_right_down_up = select(
-                reach_right_up > 1e-11*machine_scale,
-                (arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up),
-                sin(free_a2),
-            )
+
+        arm_along_q2_right_up = a2 + a3*cos_q3_right_up
+        arm_across_q2_right_up_up = a3*sin_q3_right_up_up
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_right_up_up = (
+            arm_across_q2_right_up_up*wrist_y_from_q1_right_up + arm_along_q2_right_up*wrist_x_from_q1_right_up
+        )
+        direction_y_q2_right_up_up = (
+            arm_along_q2_right_up*wrist_y_from_q1_right_up - arm_across_q2_right_up_up*wrist_x_from_q1_right_up
+        )
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_right_down_up = (
+            arm_along_q2_right_up*wrist_x_from_q1_right_up - arm_across_q2_right_up_up*wrist_y_from_q1_right_up
+        )
+        direction_y_q2_right_down_up = (
+            arm_across_q2_right_up_up*wrist_x_from_q1_right_up + arm_along_q2_right_up*wrist_y_from_q1_right_up
+        )
+        found = elsewhere(
+            reach_right_up > 1e-11*machine_scale,
+            (
+                direction_x_q2_right_up_up, direction_y_q2_right_up_up, direction_x_q2_right_down_up,
+                direction_y_q2_right_down_up,
+            ),
+            elsewhere_direction_x_q2_right_up_up,
+            (ref_a2,),
+        )
+        (
+            direction_x_q2_right_up_up, direction_y_q2_right_up_up, direction_x_q2_right_down_up,
+            direction_y_q2_right_down_up,
+        ) = found
         angle_q2_right_up_up = atan2(direction_y_q2_right_up_up, direction_x_q2_right_up_up)
         axis_a2_right_up_up = nearest_period(offset_a2 + angle_q2_right_up_up/DEGREE, near_a2)  # A2: its turn
         angle_q3_right_up_up = atan2(sin_q3_right_up_up, cos_q3_right_up)
@@ -1492,9 +1616,9 @@ class ArrayPrograms(Programs):
             offset_a4 + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up)/DEGREE, near_a4,
         )
         # A5: its turn
-        axis_a5_right_up = nearest_period(offset_a5 + atan2(-radius_q6_right, cos_q5_right)/DEGREE, near_a5)
+        axis_a5_right_up = nearest_period(offset_a5 + degrees(-radius_q6_right, cos_q5_right), near_a5)
         # A6: its turn
-        axis_a6_right_up = nearest_period(offset_a6 + atan2(sin_q6_right_up, cos_q6_right_up)/DEGREE, near_a6)
+        axis_a6_right_up = nearest_period(offset_a6 + degrees(sin_q6_right_up, cos_q6_right_up), near_a6)
         angle_q2_right_down_down = atan2(direction_y_q2_right_down_down, direction_x_q2_right_down_down)
         axis_a2_right_down_down = nearest_period(offset_a2 + angle_q2_right_down_down/DEGREE, near_a2)  # A2: its turn
         angle_q3_right_down_down = atan2(-sin_q3_right_up_down, cos_q3_right_down)
@@ -1512,61 +1636,65 @@ class ArrayPrograms(Programs):
         axis_a4_right_down_up = nearest_period(
             offset_a4 + (angle_with_q4_right_up - angle_q2_right_down_up - angle_q3_right_down_up)/DEGREE, near_a4,
         )
+        status_left_down = refused(status, refusal_left_down)
+        status_right_down = refused(status, refusal_right_down)
+        status_left_up = refused(status, refusal_left_up)
+        status_right_up = refused(status, refusal_right_up)
         return (
             (
                 (
                     axis_a1_left, axis_a2_left_up_down, axis_a3_left_up_down, axis_a4_left_up_down, axis_a5_left_down,
                     axis_a6_left_down,
                 ),
-                refused(status, refusal_left_down),
+                status_left_down,
             ),
             (
                 (
                     axis_a1_right, axis_a2_right_up_down, axis_a3_right_up_down, axis_a4_right_up_down,
                     axis_a5_right_down, axis_a6_right_down,
                 ),
-                refused(status, refusal_right_down),
+                status_right_down,
             ),
             (
                 (
                     axis_a1_left, axis_a2_left_down_down, axis_a3_left_down_down, axis_a4_left_down_down,
                     axis_a5_left_down, axis_a6_left_down,
                 ),
-                refused(status, refusal_left_down),
+                status_left_down,
             ),
             (
                 (
                     axis_a1_right, axis_a2_right_down_down, axis_a3_right_down_down, axis_a4_right_down_down,
                     axis_a5_right_down, axis_a6_right_down,
                 ),
-                refused(status, refusal_right_down),
+                status_right_down,
             ),
             (
                 (
                     axis_a1_left, axis_a2_left_up_up, axis_a3_left_up_up, axis_a4_left_up_up, axis_a5_left_up,
                     axis_a6_left_up,
                 ),
-                refused(status, refusal_left_up),
+                status_left_up,
             ),
             (
                 (
                     axis_a1_right, axis_a2_right_up_up, axis_a3_right_up_up, axis_a4_right_up_up, axis_a5_right_up,
                     axis_a6_right_up,
                 ),
-                refused(status, refusal_right_up),
+                status_right_up,
             ),
             (
                 (
                     axis_a1_left, axis_a2_left_down_up, axis_a3_left_down_up, axis_a4_left_down_up, axis_a5_left_up,
                     axis_a6_left_up,
                 ),
-                refused(status, refusal_left_up),
+                status_left_up,
             ),
             (
                 (
                     axis_a1_right, axis_a2_right_down_up, axis_a3_right_down_up, axis_a4_right_down_up,
                     axis_a5_right_up, axis_a6_right_up,
                 ),
-                refused(status, refusal_right_up),
+                status_right_up,
             ),
         )

@@ -10,20 +10,20 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -161,23 +161,30 @@ class ArrayPrograms(Programs):
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        radius_a4 = root(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        if everywhere(radius_a4 > 1e-11):
-            # a4: polar angle in the r33 and r13 equations; its reference where it is free
-            direction_x_a4 = r33*sigma_wrist
-            direction_y_a4 = r13*sigma_wrist
-        else:
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+
+        def elsewhere_direction_x_a4(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # a4: polar angle in the r33 and r13 equations; its reference where it is free
-            direction_x_a4 = select(radius_a4 > 1e-11, r33*sigma_wrist, cos(free_a4))
-            direction_y_a4 = select(radius_a4 > 1e-11, r13*sigma_wrist, sin(free_a4))
+            direction_x_a4 = cos(free_a4)  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_y_a4 = sin(free_a4)
+            return (direction_x_a4, direction_y_a4)
+
+        # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        direction_x_a4 = r33*sigma_wrist
+        direction_y_a4 = r13*sigma_wrist
+        direction_x_a4, direction_y_a4 = elsewhere(
+            radius_a4 > 1e-11,
+            (direction_x_a4, direction_y_a4),
+            elsewhere_direction_x_a4,
+            (ref_a4,),
+        )
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(direction_y_a4, direction_x_a4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = nearest_period(offset_a4 + degrees(direction_y_a4, direction_x_a4), near_a4)  # A4: its turn
         a4_radius_of_a5 = radius_a4*sigma_wrist
         sin_a5 = -r23
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
@@ -186,7 +193,7 @@ class ArrayPrograms(Programs):
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5 = nearest_period(offset_a5 + atan2(sin_a5, a4_radius_of_a5)/DEGREE, near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + degrees(sin_a5, a4_radius_of_a5), near_a5)  # A5: its turn
         r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
         sin_a6 = direction_y_a4*r32 - direction_x_a4*r12
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
@@ -195,7 +202,7 @@ class ArrayPrograms(Programs):
             select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
             open_a6,
         )
-        axis_a6 = nearest_period(offset_a6 + atan2(sin_a6, r11_from_a4)/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + degrees(sin_a6, r11_from_a4), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -293,20 +300,28 @@ class ArrayPrograms(Programs):
         axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
-        radius_a4 = root(r13*r13 + r33*r33)  # a4: direction and distance of a point
-        if everywhere(radius_a4 > 1e-11):
-            direction_x_a4_upright = r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
-            direction_y_a4_upright = r13
-            direction_x_a4_flipped = -r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
-            direction_y_a4_flipped = -r13
-        else:
+        radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+
+        def elsewhere_direction_x_a4_upright(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             # a4: polar angle in the r33 and r13 equations; its reference where it is free
-            direction_x_a4_upright = select(radius_a4 > 1e-11, r33, cos(free_a4))
-            direction_y_a4_upright = select(radius_a4 > 1e-11, r13, sin(free_a4))
+            direction_x_a4_upright = cos(free_a4)
+            direction_y_a4_upright = sin(free_a4)
             # a4: polar angle in the r33 and r13 equations; its reference where it is free
-            direction_x_a4_flipped = select(radius_a4 > 1e-11, -r33, cos(free_a4))
-            direction_y_a4_flipped = select(radius_a4 > 1e-11, -r13, sin(free_a4))
+            direction_x_a4_flipped = direction_x_a4_upright
+            direction_y_a4_flipped = direction_y_a4_upright
+            return (direction_x_a4_upright, direction_y_a4_upright, direction_x_a4_flipped, direction_y_a4_flipped)
+
+        direction_x_a4_upright = r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        direction_y_a4_upright = r13
+        direction_x_a4_flipped = -r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+        direction_y_a4_flipped = -r13
+        direction_x_a4_upright, direction_y_a4_upright, direction_x_a4_flipped, direction_y_a4_flipped = elsewhere(
+            radius_a4 > 1e-11,
+            (direction_x_a4_upright, direction_y_a4_upright, direction_x_a4_flipped, direction_y_a4_flipped),
+            elsewhere_direction_x_a4_upright,
+            (ref_a4,),
+        )
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
@@ -314,16 +329,14 @@ class ArrayPrograms(Programs):
             open_a4,
         )
         # A4: its turn
-        axis_a4_upright = nearest_period(
-            offset_a4 + atan2(direction_y_a4_upright, direction_x_a4_upright)/DEGREE, near_a4,
-        )
+        axis_a4_upright = nearest_period(offset_a4 + degrees(direction_y_a4_upright, direction_x_a4_upright), near_a4)
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
         near_a5 = select(
             absolute(turn_a5) > 0.0,
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5_upright = nearest_period(offset_a5 + atan2(-r23, radius_a4)/DEGREE, near_a5)  # A5: its turn
+        axis_a5_upright = nearest_period(offset_a5 + degrees(-r23, radius_a4), near_a5)  # A5: its turn
         r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
         sin_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
@@ -333,17 +346,15 @@ class ArrayPrograms(Programs):
             open_a6,
         )
         # A6: its turn
-        axis_a6_upright = nearest_period(offset_a6 + atan2(sin_a6_upright, r11_from_a4_upright)/DEGREE, near_a6)
+        axis_a6_upright = nearest_period(offset_a6 + degrees(sin_a6_upright, r11_from_a4_upright), near_a6)
         # A4: its turn
-        axis_a4_flipped = nearest_period(
-            offset_a4 + atan2(direction_y_a4_flipped, direction_x_a4_flipped)/DEGREE, near_a4,
-        )
-        axis_a5_flipped = nearest_period(offset_a5 + atan2(-r23, -radius_a4)/DEGREE, near_a5)  # A5: its turn
+        axis_a4_flipped = nearest_period(offset_a4 + degrees(direction_y_a4_flipped, direction_x_a4_flipped), near_a4)
+        axis_a5_flipped = nearest_period(offset_a5 + degrees(-r23, -radius_a4), near_a5)  # A5: its turn
         r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
         sin_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
         # A6: its turn
-        axis_a6_flipped = nearest_period(offset_a6 + atan2(sin_a6_flipped, r11_from_a4_flipped)/DEGREE, near_a6)
+        axis_a6_flipped = nearest_period(offset_a6 + degrees(sin_a6_flipped, r11_from_a4_flipped), near_a6)
         return (
-            ((axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright), refused(status, 0.0)),
-            ((axis_a1, axis_a2, axis_a3, axis_a4_flipped, axis_a5_flipped, axis_a6_flipped), refused(status, 0.0)),
+            ((axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright), status),
+            ((axis_a1, axis_a2, axis_a3, axis_a4_flipped, axis_a5_flipped, axis_a6_flipped), status),
         )

@@ -10,13 +10,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -24,6 +25,7 @@ from softkin._array import (
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -219,36 +221,28 @@ class ArrayPrograms(Programs):
         )
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
-        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = root(sine_square_q1)*sigma_arm
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
-            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = root(sine_square_q1)*sigma_arm
-            # its reference where it is free
-            cos_q1 = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1 = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1,
-                sin(free_a1),
-            )
+            cos_q1 = cos(free_a1)  # its reference where it is free
+            sin_q1 = sin(free_a1)
+            return (cos_q1, sin_q1)
+
+        cos_swing_q1 = -d3/divisor_q1
+        sin_swing_q1 = root(sine_square_q1)*sigma_arm
+        cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+        sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+        cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
             (effective_q3 + reach - a2)*(a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)
@@ -262,44 +256,36 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_q2 = -effective_q3*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3*cos_swing_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                across_q2*across_q2 + along_q2*along_q2 > 0.0,
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            cos_q2 = along_q2/length_q2  # its reference where it is free
-            sin_q2 = across_q2/length_q2
-        else:
+
+        def elsewhere_cos_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2 = -effective_q3*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3*cos_swing_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-            length_q2 = select(
-                (reach > 1e-11*machine_scale) & (across_q2*across_q2 + along_q2*along_q2 > 0.0),
-                root(across_q2*across_q2 + along_q2*along_q2),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2 = select(reach > 1e-11*machine_scale, along_q2/length_q2, cos(free_a2))
-            sin_q2 = select(reach > 1e-11*machine_scale, across_q2/length_q2, sin(free_a2))
+            cos_q2 = cos(free_a2)  # its reference where it is free
+            sin_q2 = sin(free_a2)
+            return (cos_q2, sin_q2)
+
+        arm_along_q2 = -effective_q3*sin_swing_q3
+        arm_across_q2 = a2 + effective_q3*cos_swing_q3
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+        across_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        length_q2 = select(
+            across_q2*across_q2 + along_q2*along_q2 > 0.0,
+            sqrt(across_q2*across_q2 + along_q2*along_q2),
+            1.0,
+        )
+        cos_q2 = along_q2/length_q2  # its reference where it is free
+        sin_q2 = across_q2/length_q2
+        cos_q2, sin_q2 = elsewhere(reach > 1e-11*machine_scale, (cos_q2, sin_q2), elsewhere_cos_q2, (ref_a2,))
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_q2, cos_q2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: its turn
         cos_q3 = a3*cos_swing_q3/effective_q3 - d4*sin_swing_q3/effective_q3
         sin_q3 = a3*sin_swing_q3/effective_q3 + d4*cos_swing_q3/effective_q3
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
@@ -308,30 +294,37 @@ class ArrayPrograms(Programs):
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
         sin_q23 = cos_q2*sin_q3 + cos_q3*sin_q2
         cos_q23 = cos_q2*cos_q3 - sin_q2*sin_q3
         r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         # q4: direction and distance of a point
-        radius_q4 = root(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
-        if everywhere(radius_q4 > 1e-11):
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4 = -r13_from_q123*sigma_hand
-            direction_y_q4 = r23_from_q1*sigma_hand
-        else:
+        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+
+        def elsewhere_direction_x_q4(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4 = select(radius_q4 > 1e-11, -r13_from_q123*sigma_hand, cos(free_a4))
-            direction_y_q4 = select(radius_q4 > 1e-11, r23_from_q1*sigma_hand, sin(free_a4))
+            direction_x_q4 = cos(free_a4)  # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_y_q4 = sin(free_a4)
+            return (direction_x_q4, direction_y_q4)
+
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_q4 = -r13_from_q123*sigma_hand
+        direction_y_q4 = r23_from_q1*sigma_hand
+        direction_x_q4, direction_y_q4 = elsewhere(
+            radius_q4 > 1e-11,
+            (direction_x_q4, direction_y_q4),
+            elsewhere_direction_x_q4,
+            (ref_a4,),
+        )
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + atan2(direction_y_q4, direction_x_q4)/DEGREE, near_a4)  # A4: its turn
+        axis_a4 = nearest_period(offset_a4 + degrees(direction_y_q4, direction_x_q4), near_a4)  # A4: its turn
         q4_radius_of_q5 = radius_q4*sigma_hand
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
@@ -340,7 +333,7 @@ class ArrayPrograms(Programs):
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5 = nearest_period(offset_a5 + atan2(q4_radius_of_q5, cos_q5)/DEGREE, near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + degrees(q4_radius_of_q5, cos_q5), near_a5)  # A5: its turn
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
@@ -355,7 +348,7 @@ class ArrayPrograms(Programs):
             select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
             open_a6,
         )
-        axis_a6 = nearest_period(offset_a6 + atan2(r21_from_q1234, r22_from_q1234)/DEGREE, near_a6)  # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + degrees(r21_from_q1234, r22_from_q1234), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -465,50 +458,38 @@ class ArrayPrograms(Programs):
         )
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
-        distance_q1 = root(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
+        distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = root(sine_square_q1)
-            # its reference where it is free
-            cos_q1_front = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1
-            sin_q1_front = (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1
-            cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1_front(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = root(sine_square_q1)
-            # its reference where it is free
-            cos_q1_front = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_front = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1,
-                sin(free_a1),
-            )
-            # its reference where it is free
-            cos_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1,
-                sin(free_a1),
-            )
+            cos_q1_front = cos(free_a1)  # its reference where it is free
+            sin_q1_front = sin(free_a1)
+            cos_q1_back = cos_q1_front  # its reference where it is free
+            sin_q1_back = sin_q1_front
+            return (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back)
+
+        cos_swing_q1 = -d3/divisor_q1
+        sin_swing_q1_front = root(sine_square_q1)
+        # its reference where it is free
+        cos_q1_front = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_front)/divisor_q1
+        sin_q1_front = (wrist_y*sin_swing_q1_front - wrist_x*cos_swing_q1)/divisor_q1
+        cos_q1_back = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+        sin_q1_back = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_front)/divisor_q1
+        cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back = elsewhere(
+            distance_q1 > 1e-11*machine_scale,
+            (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back),
+            elsewhere_cos_q1_front,
+            (ref_a1,),
+        )
         wrist_x_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach_front = root(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
+        reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3_front = (
             (effective_q3 + reach_front - a2)*(a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
@@ -521,66 +502,40 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_front = nearest_period(offset_a1 + atan2(sin_q1_front, cos_q1_front)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
         sin_swing_q3_front_up = root(sine_square_q3_front)
         cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
-        if everywhere(reach_front > 1e-11*machine_scale):
-            arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up
-            arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = select(length_q2_squared_front_down > 0.0, root(length_q2_squared_front_down), 1.0)
-            cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
-            sin_q2_front_down = across_q2_front_down/length_q2_front_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
-            cos_q2_front_up = along_q2_front_up/length_q2_front_down  # its reference where it is free
-            across_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
-            sin_q2_front_up = across_q2_front_up/length_q2_front_down
-        else:
+
+        def elsewhere_cos_q2_front_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up
-            arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_down = arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            across_q2_front_down = arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
-            length_q2_squared_front_down = (
-                across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
-            )
-            length_q2_front_down = select(
-                (length_q2_squared_front_down > 0.0) & (reach_front > 1e-11*machine_scale),
-                root(length_q2_squared_front_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_front_down = select(
-                reach_front > 1e-11*machine_scale,
-                along_q2_front_down/length_q2_front_down,
-                cos(free_a2),
-            )
-            sin_q2_front_down = select(
-                reach_front > 1e-11*machine_scale,
-                across_q2_front_down/length_q2_front_down,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
-            # its reference where it is free
-            cos_q2_front_up = select(
-                reach_front > 1e-11*machine_scale,
-                along_q2_front_up/length_q2_front_down,
-                cos(free_a2),
-            )
-            across_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
-            sin_q2_front_up = select(
-                reach_front > 1e-11*machine_scale,
-                across_q2_front_up/length_q2_front_down,
-                sin(free_a2),
-            )
+            cos_q2_front_down = cos(free_a2)  # its reference where it is free
+            sin_q2_front_down = sin(free_a2)
+            cos_q2_front_up = cos_q2_front_down  # its reference where it is free
+            sin_q2_front_up = sin_q2_front_down
+            return (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up)
+
+        arm_along_q2_front_down = effective_q3*sin_swing_q3_front_up
+        arm_across_q2_front = a2 + effective_q3*cos_swing_q3_front
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_front_down = arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+        across_q2_front_down = arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
+        length_q2_squared_front_down = (
+            across_q2_front_down*across_q2_front_down + along_q2_front_down*along_q2_front_down
+        )
+        length_q2_front_down = select(length_q2_squared_front_down > 0.0, root(length_q2_squared_front_down), 1.0)
+        cos_q2_front_down = along_q2_front_down/length_q2_front_down  # its reference where it is free
+        sin_q2_front_down = across_q2_front_down/length_q2_front_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
+        cos_q2_front_up = along_q2_front_up/length_q2_front_down  # its reference where it is free
+        across_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
+        sin_q2_front_up = across_q2_front_up/length_q2_front_down
+        cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up = elsewhere(
+            reach_front > 1e-11*machine_scale,
+            (cos_q2_front_down, sin_q2_front_down, cos_q2_front_up, sin_q2_front_up),
+            elsewhere_cos_q2_front_down,
+            (ref_a2,),
+        )
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -588,7 +543,7 @@ class ArrayPrograms(Programs):
             open_a2,
         )
         # A2: its turn
-        axis_a2_front_down = nearest_period(offset_a2 + atan2(sin_q2_front_down, cos_q2_front_down)/DEGREE, near_a2)
+        axis_a2_front_down = nearest_period(offset_a2 + degrees(sin_q2_front_down, cos_q2_front_down), near_a2)
         cos_q3_front_down = a3*cos_swing_q3_front/effective_q3 + d4*sin_swing_q3_front_up/effective_q3
         sin_q3_front_down = d4*cos_swing_q3_front/effective_q3 - a3*sin_swing_q3_front_up/effective_q3
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
@@ -598,31 +553,49 @@ class ArrayPrograms(Programs):
             open_a3,
         )
         # A3: its turn
-        axis_a3_front_down = nearest_period(offset_a3 + atan2(sin_q3_front_down, cos_q3_front_down)/DEGREE, near_a3)
+        axis_a3_front_down = nearest_period(offset_a3 + degrees(sin_q3_front_down, cos_q3_front_down), near_a3)
         r13_from_q1_front = r13*cos_q1_front + r23*sin_q1_front
         sin_q23_front_down = cos_q2_front_down*sin_q3_front_down + cos_q3_front_down*sin_q2_front_down
         cos_q23_front_down = cos_q2_front_down*cos_q3_front_down - sin_q2_front_down*sin_q3_front_down
         r13_from_q123_front_down = r33*cos_q23_front_down - r13_from_q1_front*sin_q23_front_down
         r23_from_q1_front = r23*cos_q1_front - r13*sin_q1_front
         # q4: direction and distance of a point
-        radius_q4_front_down = root(
+        radius_q4_front_down = sqrt(
             r13_from_q123_front_down*r13_from_q123_front_down + r23_from_q1_front*r23_from_q1_front
         )
-        if everywhere(radius_q4_front_down > 1e-11):
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_front_down_down = -r13_from_q123_front_down
-            direction_y_q4_front_down_down = r23_from_q1_front
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_front_down_up = -direction_x_q4_front_down_down
-            direction_y_q4_front_down_up = -r23_from_q1_front
-        else:
+
+        def elsewhere_direction_x_q4_front_down_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_front_down_down = select(radius_q4_front_down > 1e-11, -r13_from_q123_front_down, cos(free_a4))
-            direction_y_q4_front_down_down = select(radius_q4_front_down > 1e-11, r23_from_q1_front, sin(free_a4))
+            direction_x_q4_front_down_down = cos(free_a4)
+            direction_y_q4_front_down_down = sin(free_a4)
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_front_down_up = select(radius_q4_front_down > 1e-11, r13_from_q123_front_down, cos(free_a4))
-            direction_y_q4_front_down_up = select(radius_q4_front_down > 1e-11, -r23_from_q1_front, sin(free_a4))
+            direction_x_q4_front_down_up = direction_x_q4_front_down_down
+            direction_y_q4_front_down_up = direction_y_q4_front_down_down
+            return (
+                direction_x_q4_front_down_down, direction_y_q4_front_down_down, direction_x_q4_front_down_up,
+                direction_y_q4_front_down_up,
+            )
+
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_q4_front_down_down = -r13_from_q123_front_down
+        direction_y_q4_front_down_down = r23_from_q1_front
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_q4_front_down_up = -direction_x_q4_front_down_down
+        direction_y_q4_front_down_up = -r23_from_q1_front
+        found = elsewhere(
+            radius_q4_front_down > 1e-11,
+            (
+                direction_x_q4_front_down_down, direction_y_q4_front_down_down, direction_x_q4_front_down_up,
+                direction_y_q4_front_down_up,
+            ),
+            elsewhere_direction_x_q4_front_down_down,
+            (ref_a4,),
+        )
+        (
+            direction_x_q4_front_down_down, direction_y_q4_front_down_down, direction_x_q4_front_down_up,
+            direction_y_q4_front_down_up,
+        ) = found
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
@@ -631,7 +604,8 @@ class ArrayPrograms(Programs):
         )
         # A4: its turn
         axis_a4_front_down_down = nearest_period(
-            offset_a4 + atan2(direction_y_q4_front_down_down, direction_x_q4_front_down_down)/DEGREE, near_a4,
+            offset_a4 + degrees(direction_y_q4_front_down_down, direction_x_q4_front_down_down),
+            near_a4,
         )
         # q5: linear pair in the q4 radius and r23 equations
         cos_q5_front_down = r13_from_q1_front*cos_q23_front_down + r33*sin_q23_front_down
@@ -643,7 +617,8 @@ class ArrayPrograms(Programs):
         )
         # A5: its turn
         axis_a5_front_down_down = nearest_period(
-            offset_a5 + atan2(radius_q4_front_down, cos_q5_front_down)/DEGREE, near_a5,
+            offset_a5 + degrees(radius_q4_front_down, cos_q5_front_down),
+            near_a5,
         )
         r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
         r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
@@ -667,16 +642,16 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_front_down_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down),
+            near_a6,
         )
         # A4: its turn
         axis_a4_front_down_up = nearest_period(
-            offset_a4 + atan2(direction_y_q4_front_down_up, direction_x_q4_front_down_up)/DEGREE, near_a4,
+            offset_a4 + degrees(direction_y_q4_front_down_up, direction_x_q4_front_down_up),
+            near_a4,
         )
         # A5: its turn
-        axis_a5_front_down_up = nearest_period(
-            offset_a5 + atan2(-radius_q4_front_down, cos_q5_front_down)/DEGREE, near_a5,
-        )
+        axis_a5_front_down_up = nearest_period(offset_a5 + degrees(-radius_q4_front_down, cos_q5_front_down), near_a5)
         r21_from_q1234_front_down_up = (
             -direction_x_q4_front_down_up*r21_from_q1_front - direction_y_q4_front_down_up*r11_from_q123_front_down
         )
@@ -685,42 +660,62 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_front_down_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up),
+            near_a6,
         )
         # A2: its turn
-        axis_a2_front_up = nearest_period(offset_a2 + atan2(sin_q2_front_up, cos_q2_front_up)/DEGREE, near_a2)
+        axis_a2_front_up = nearest_period(offset_a2 + degrees(sin_q2_front_up, cos_q2_front_up), near_a2)
         cos_q3_front_up = a3*cos_swing_q3_front/effective_q3 - d4*sin_swing_q3_front_up/effective_q3
         sin_q3_front_up = a3*sin_swing_q3_front_up/effective_q3 + d4*cos_swing_q3_front/effective_q3
         # A3: its turn
-        axis_a3_front_up = nearest_period(offset_a3 + atan2(sin_q3_front_up, cos_q3_front_up)/DEGREE, near_a3)
+        axis_a3_front_up = nearest_period(offset_a3 + degrees(sin_q3_front_up, cos_q3_front_up), near_a3)
         sin_q23_front_up = cos_q2_front_up*sin_q3_front_up + cos_q3_front_up*sin_q2_front_up
         cos_q23_front_up = cos_q2_front_up*cos_q3_front_up - sin_q2_front_up*sin_q3_front_up
         r13_from_q123_front_up = r33*cos_q23_front_up - r13_from_q1_front*sin_q23_front_up
         # q4: direction and distance of a point
-        radius_q4_front_up = root(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
-        if everywhere(radius_q4_front_up > 1e-11):
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_front_up_down = -r13_from_q123_front_up
-            direction_y_q4_front_up_down = r23_from_q1_front
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_front_up_up = -direction_x_q4_front_up_down
-            direction_y_q4_front_up_up = -r23_from_q1_front
-        else:
+        radius_q4_front_up = sqrt(r13_from_q123_front_up*r13_from_q123_front_up + r23_from_q1_front*r23_from_q1_front)
+
+        def elsewhere_direction_x_q4_front_up_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_front_up_down = select(radius_q4_front_up > 1e-11, -r13_from_q123_front_up, cos(free_a4))
-            direction_y_q4_front_up_down = select(radius_q4_front_up > 1e-11, r23_from_q1_front, sin(free_a4))
+            direction_x_q4_front_up_down = cos(free_a4)
+            direction_y_q4_front_up_down = sin(free_a4)
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_front_up_up = select(radius_q4_front_up > 1e-11, r13_from_q123_front_up, cos(free_a4))
-            direction_y_q4_front_up_up = select(radius_q4_front_up > 1e-11, -r23_from_q1_front, sin(free_a4))
+            direction_x_q4_front_up_up = direction_x_q4_front_up_down
+            direction_y_q4_front_up_up = direction_y_q4_front_up_down
+            return (
+                direction_x_q4_front_up_down, direction_y_q4_front_up_down, direction_x_q4_front_up_up,
+                direction_y_q4_front_up_up,
+            )
+
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_q4_front_up_down = -r13_from_q123_front_up
+        direction_y_q4_front_up_down = r23_from_q1_front
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_q4_front_up_up = -direction_x_q4_front_up_down
+        direction_y_q4_front_up_up = -r23_from_q1_front
+        found = elsewhere(
+            radius_q4_front_up > 1e-11,
+            (
+                direction_x_q4_front_up_down, direction_y_q4_front_up_down, direction_x_q4_front_up_up,
+                direction_y_q4_front_up_up,
+            ),
+            elsewhere_direction_x_q4_front_up_down,
+            (ref_a4,),
+        )
+        (
+            direction_x_q4_front_up_down, direction_y_q4_front_up_down, direction_x_q4_front_up_up,
+            direction_y_q4_front_up_up,
+        ) = found
         # A4: its turn
         axis_a4_front_up_down = nearest_period(
-            offset_a4 + atan2(direction_y_q4_front_up_down, direction_x_q4_front_up_down)/DEGREE, near_a4,
+            offset_a4 + degrees(direction_y_q4_front_up_down, direction_x_q4_front_up_down),
+            near_a4,
         )
         # q5: linear pair in the q4 radius and r23 equations
         cos_q5_front_up = r13_from_q1_front*cos_q23_front_up + r33*sin_q23_front_up
         # A5: its turn
-        axis_a5_front_up_down = nearest_period(offset_a5 + atan2(radius_q4_front_up, cos_q5_front_up)/DEGREE, near_a5)
+        axis_a5_front_up_down = nearest_period(offset_a5 + degrees(radius_q4_front_up, cos_q5_front_up), near_a5)
         r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
         r21_from_q1234_front_up_down = (
             -direction_x_q4_front_up_down*r21_from_q1_front - direction_y_q4_front_up_down*r11_from_q123_front_up
@@ -731,14 +726,16 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_front_up_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down),
+            near_a6,
         )
         # A4: its turn
         axis_a4_front_up_up = nearest_period(
-            offset_a4 + atan2(direction_y_q4_front_up_up, direction_x_q4_front_up_up)/DEGREE, near_a4,
+            offset_a4 + degrees(direction_y_q4_front_up_up, direction_x_q4_front_up_up),
+            near_a4,
         )
         # A5: its turn
-        axis_a5_front_up_up = nearest_period(offset_a5 + atan2(-radius_q4_front_up, cos_q5_front_up)/DEGREE, near_a5)
+        axis_a5_front_up_up = nearest_period(offset_a5 + degrees(-radius_q4_front_up, cos_q5_front_up), near_a5)
         r21_from_q1234_front_up_up = (
             -direction_x_q4_front_up_up*r21_from_q1_front - direction_y_q4_front_up_up*r11_from_q123_front_up
         )
@@ -747,104 +744,106 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_front_up_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up),
+            near_a6,
         )
         wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
-        reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
+        reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3_back = (
             (effective_q3 + reach_back - a2)*(a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
             *(a2 + reach_back - effective_q3)/(swing_scale_q3*swing_scale_q3)
         )
         refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        axis_a1_back = nearest_period(offset_a1 + atan2(sin_q1_back, cos_q1_back)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
         sin_swing_q3_back_up = root(sine_square_q3_back)
         cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
-        if everywhere(reach_back > 1e-11*machine_scale):
-            arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up
-            arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = select(length_q2_squared_back_down > 0.0, root(length_q2_squared_back_down), 1.0)
-            cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
-            sin_q2_back_down = across_q2_back_down/length_q2_back_down
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
-            cos_q2_back_up = along_q2_back_up/length_q2_back_down  # its reference where it is free
-            across_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
-            sin_q2_back_up = across_q2_back_up/length_q2_back_down
-        else:
+
+        def elsewhere_cos_q2_back_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up
-            arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
-            length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
-            length_q2_back_down = select(
-                (length_q2_squared_back_down > 0.0) & (reach_back > 1e-11*machine_scale),
-                root(length_q2_squared_back_down),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_back_down = select(
-                reach_back > 1e-11*machine_scale,
-                along_q2_back_down/length_q2_back_down,
-                cos(free_a2),
-            )
-            sin_q2_back_down = select(
-                reach_back > 1e-11*machine_scale,
-                across_q2_back_down/length_q2_back_down,
-                sin(free_a2),
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations
-            along_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
-            # its reference where it is free
-            cos_q2_back_up = select(reach_back > 1e-11*machine_scale, along_q2_back_up/length_q2_back_down, cos(free_a2))
-            across_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
-            sin_q2_back_up = select(reach_back > 1e-11*machine_scale, across_q2_back_up/length_q2_back_down, sin(free_a2))
+            cos_q2_back_down = cos(free_a2)  # its reference where it is free
+            sin_q2_back_down = sin(free_a2)
+            cos_q2_back_up = cos_q2_back_down  # its reference where it is free
+            sin_q2_back_up = sin_q2_back_down
+            return (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up)
+
+        arm_along_q2_back_down = effective_q3*sin_swing_q3_back_up
+        arm_across_q2_back = a2 + effective_q3*cos_swing_q3_back
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+        across_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
+        length_q2_squared_back_down = across_q2_back_down*across_q2_back_down + along_q2_back_down*along_q2_back_down
+        length_q2_back_down = select(length_q2_squared_back_down > 0.0, root(length_q2_squared_back_down), 1.0)
+        cos_q2_back_down = along_q2_back_down/length_q2_back_down  # its reference where it is free
+        sin_q2_back_down = across_q2_back_down/length_q2_back_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations
+        along_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
+        cos_q2_back_up = along_q2_back_up/length_q2_back_down  # its reference where it is free
+        across_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
+        sin_q2_back_up = across_q2_back_up/length_q2_back_down
+        cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up = elsewhere(
+            reach_back > 1e-11*machine_scale,
+            (cos_q2_back_down, sin_q2_back_down, cos_q2_back_up, sin_q2_back_up),
+            elsewhere_cos_q2_back_down,
+            (ref_a2,),
+        )
         # A2: its turn
-        axis_a2_back_down = nearest_period(offset_a2 + atan2(sin_q2_back_down, cos_q2_back_down)/DEGREE, near_a2)
+        axis_a2_back_down = nearest_period(offset_a2 + degrees(sin_q2_back_down, cos_q2_back_down), near_a2)
         cos_q3_back_down = a3*cos_swing_q3_back/effective_q3 + d4*sin_swing_q3_back_up/effective_q3
         sin_q3_back_down = d4*cos_swing_q3_back/effective_q3 - a3*sin_swing_q3_back_up/effective_q3
         # A3: its turn
-        axis_a3_back_down = nearest_period(offset_a3 + atan2(sin_q3_back_down, cos_q3_back_down)/DEGREE, near_a3)
+        axis_a3_back_down = nearest_period(offset_a3 + degrees(sin_q3_back_down, cos_q3_back_down), near_a3)
         r13_from_q1_back = r13*cos_q1_back + r23*sin_q1_back
         sin_q23_back_down = cos_q2_back_down*sin_q3_back_down + cos_q3_back_down*sin_q2_back_down
         cos_q23_back_down = cos_q2_back_down*cos_q3_back_down - sin_q2_back_down*sin_q3_back_down
         r13_from_q123_back_down = r33*cos_q23_back_down - r13_from_q1_back*sin_q23_back_down
         r23_from_q1_back = r23*cos_q1_back - r13*sin_q1_back
         # q4: direction and distance of a point
-        radius_q4_back_down = root(
+        radius_q4_back_down = sqrt(
             r13_from_q123_back_down*r13_from_q123_back_down + r23_from_q1_back*r23_from_q1_back
         )
-        if everywhere(radius_q4_back_down > 1e-11):
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_back_down_down = -r13_from_q123_back_down
-            direction_y_q4_back_down_down = r23_from_q1_back
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_back_down_up = -direction_x_q4_back_down_down
-            direction_y_q4_back_down_up = -r23_from_q1_back
-        else:
+
+        def elsewhere_direction_x_q4_back_down_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_back_down_down = select(radius_q4_back_down > 1e-11, -r13_from_q123_back_down, cos(free_a4))
-            direction_y_q4_back_down_down = select(radius_q4_back_down > 1e-11, r23_from_q1_back, sin(free_a4))
+            direction_x_q4_back_down_down = cos(free_a4)
+            direction_y_q4_back_down_down = sin(free_a4)
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_back_down_up = select(radius_q4_back_down > 1e-11, r13_from_q123_back_down, cos(free_a4))
-            direction_y_q4_back_down_up = select(radius_q4_back_down > 1e-11, -r23_from_q1_back, sin(free_a4))
+            direction_x_q4_back_down_up = direction_x_q4_back_down_down
+            direction_y_q4_back_down_up = direction_y_q4_back_down_down
+            return (
+                direction_x_q4_back_down_down, direction_y_q4_back_down_down, direction_x_q4_back_down_up,
+                direction_y_q4_back_down_up,
+            )
+
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_q4_back_down_down = -r13_from_q123_back_down
+        direction_y_q4_back_down_down = r23_from_q1_back
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_q4_back_down_up = -direction_x_q4_back_down_down
+        direction_y_q4_back_down_up = -r23_from_q1_back
+        found = elsewhere(
+            radius_q4_back_down > 1e-11,
+            (
+                direction_x_q4_back_down_down, direction_y_q4_back_down_down, direction_x_q4_back_down_up,
+                direction_y_q4_back_down_up,
+            ),
+            elsewhere_direction_x_q4_back_down_down,
+            (ref_a4,),
+        )
+        (
+            direction_x_q4_back_down_down, direction_y_q4_back_down_down, direction_x_q4_back_down_up,
+            direction_y_q4_back_down_up,
+        ) = found
         # A4: its turn
         axis_a4_back_down_down = nearest_period(
-            offset_a4 + atan2(direction_y_q4_back_down_down, direction_x_q4_back_down_down)/DEGREE, near_a4,
+            offset_a4 + degrees(direction_y_q4_back_down_down, direction_x_q4_back_down_down),
+            near_a4,
         )
         # q5: linear pair in the q4 radius and r23 equations
         cos_q5_back_down = r13_from_q1_back*cos_q23_back_down + r33*sin_q23_back_down
         # A5: its turn
-        axis_a5_back_down_down = nearest_period(
-            offset_a5 + atan2(radius_q4_back_down, cos_q5_back_down)/DEGREE, near_a5,
-        )
+        axis_a5_back_down_down = nearest_period(offset_a5 + degrees(radius_q4_back_down, cos_q5_back_down), near_a5)
         r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
         r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
@@ -859,16 +858,16 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_back_down_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down),
+            near_a6,
         )
         # A4: its turn
         axis_a4_back_down_up = nearest_period(
-            offset_a4 + atan2(direction_y_q4_back_down_up, direction_x_q4_back_down_up)/DEGREE, near_a4,
+            offset_a4 + degrees(direction_y_q4_back_down_up, direction_x_q4_back_down_up),
+            near_a4,
         )
         # A5: its turn
-        axis_a5_back_down_up = nearest_period(
-            offset_a5 + atan2(-radius_q4_back_down, cos_q5_back_down)/DEGREE, near_a5,
-        )
+        axis_a5_back_down_up = nearest_period(offset_a5 + degrees(-radius_q4_back_down, cos_q5_back_down), near_a5)
         r21_from_q1234_back_down_up = (
             -direction_x_q4_back_down_up*r21_from_q1_back - direction_y_q4_back_down_up*r11_from_q123_back_down
         )
@@ -877,42 +876,60 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_back_down_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up),
+            near_a6,
         )
-        # A2: its turn
-        axis_a2_back_up = nearest_period(offset_a2 + atan2(sin_q2_back_up, cos_q2_back_up)/DEGREE, near_a2)
+        axis_a2_back_up = nearest_period(offset_a2 + degrees(sin_q2_back_up, cos_q2_back_up), near_a2)  # A2: its turn
         cos_q3_back_up = a3*cos_swing_q3_back/effective_q3 - d4*sin_swing_q3_back_up/effective_q3
         sin_q3_back_up = a3*sin_swing_q3_back_up/effective_q3 + d4*cos_swing_q3_back/effective_q3
-        # A3: its turn
-        axis_a3_back_up = nearest_period(offset_a3 + atan2(sin_q3_back_up, cos_q3_back_up)/DEGREE, near_a3)
+        axis_a3_back_up = nearest_period(offset_a3 + degrees(sin_q3_back_up, cos_q3_back_up), near_a3)  # A3: its turn
         sin_q23_back_up = cos_q2_back_up*sin_q3_back_up + cos_q3_back_up*sin_q2_back_up
         cos_q23_back_up = cos_q2_back_up*cos_q3_back_up - sin_q2_back_up*sin_q3_back_up
         r13_from_q123_back_up = r33*cos_q23_back_up - r13_from_q1_back*sin_q23_back_up
         # q4: direction and distance of a point
-        radius_q4_back_up = root(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
-        if everywhere(radius_q4_back_up > 1e-11):
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_back_up_down = -r13_from_q123_back_up
-            direction_y_q4_back_up_down = r23_from_q1_back
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_back_up_up = -direction_x_q4_back_up_down
-            direction_y_q4_back_up_up = -r23_from_q1_back
-        else:
+        radius_q4_back_up = sqrt(r13_from_q123_back_up*r13_from_q123_back_up + r23_from_q1_back*r23_from_q1_back)
+
+        def elsewhere_direction_x_q4_back_up_down(ref_a4: Real) -> Reals:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_back_up_down = select(radius_q4_back_up > 1e-11, -r13_from_q123_back_up, cos(free_a4))
-            direction_y_q4_back_up_down = select(radius_q4_back_up > 1e-11, r23_from_q1_back, sin(free_a4))
+            direction_x_q4_back_up_down = cos(free_a4)
+            direction_y_q4_back_up_down = sin(free_a4)
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_q4_back_up_up = select(radius_q4_back_up > 1e-11, r13_from_q123_back_up, cos(free_a4))
-            direction_y_q4_back_up_up = select(radius_q4_back_up > 1e-11, -r23_from_q1_back, sin(free_a4))
+            direction_x_q4_back_up_up = direction_x_q4_back_up_down
+            direction_y_q4_back_up_up = direction_y_q4_back_up_down
+            return (
+                direction_x_q4_back_up_down, direction_y_q4_back_up_down, direction_x_q4_back_up_up,
+                direction_y_q4_back_up_up,
+            )
+
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_q4_back_up_down = -r13_from_q123_back_up
+        direction_y_q4_back_up_down = r23_from_q1_back
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_q4_back_up_up = -direction_x_q4_back_up_down
+        direction_y_q4_back_up_up = -r23_from_q1_back
+        found = elsewhere(
+            radius_q4_back_up > 1e-11,
+            (
+                direction_x_q4_back_up_down, direction_y_q4_back_up_down, direction_x_q4_back_up_up,
+                direction_y_q4_back_up_up,
+            ),
+            elsewhere_direction_x_q4_back_up_down,
+            (ref_a4,),
+        )
+        (
+            direction_x_q4_back_up_down, direction_y_q4_back_up_down, direction_x_q4_back_up_up,
+            direction_y_q4_back_up_up,
+        ) = found
         # A4: its turn
         axis_a4_back_up_down = nearest_period(
-            offset_a4 + atan2(direction_y_q4_back_up_down, direction_x_q4_back_up_down)/DEGREE, near_a4,
+            offset_a4 + degrees(direction_y_q4_back_up_down, direction_x_q4_back_up_down),
+            near_a4,
         )
         # q5: linear pair in the q4 radius and r23 equations
         cos_q5_back_up = r13_from_q1_back*cos_q23_back_up + r33*sin_q23_back_up
         # A5: its turn
-        axis_a5_back_up_down = nearest_period(offset_a5 + atan2(radius_q4_back_up, cos_q5_back_up)/DEGREE, near_a5)
+        axis_a5_back_up_down = nearest_period(offset_a5 + degrees(radius_q4_back_up, cos_q5_back_up), near_a5)
         r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
         r21_from_q1234_back_up_down = (
             -direction_x_q4_back_up_down*r21_from_q1_back - direction_y_q4_back_up_down*r11_from_q123_back_up
@@ -923,14 +940,16 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_back_up_down = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down),
+            near_a6,
         )
         # A4: its turn
         axis_a4_back_up_up = nearest_period(
-            offset_a4 + atan2(direction_y_q4_back_up_up, direction_x_q4_back_up_up)/DEGREE, near_a4,
+            offset_a4 + degrees(direction_y_q4_back_up_up, direction_x_q4_back_up_up),
+            near_a4,
         )
         # A5: its turn
-        axis_a5_back_up_up = nearest_period(offset_a5 + atan2(-radius_q4_back_up, cos_q5_back_up)/DEGREE, near_a5)
+        axis_a5_back_up_up = nearest_period(offset_a5 + degrees(-radius_q4_back_up, cos_q5_back_up), near_a5)
         r21_from_q1234_back_up_up = (
             -direction_x_q4_back_up_up*r21_from_q1_back - direction_y_q4_back_up_up*r11_from_q123_back_up
         )
@@ -939,63 +958,66 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_back_up_up = nearest_period(
-            offset_a6 + atan2(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up)/DEGREE, near_a6,
+            offset_a6 + degrees(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up),
+            near_a6,
         )
+        status_front = refused(status, refusal_front)
+        status_back = refused(status, refusal_back)
         return (
             (
                 (
                     axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_down,
                     axis_a5_front_down_down, axis_a6_front_down_down,
                 ),
-                refused(status, refusal_front),
+                status_front,
             ),
             (
                 (
                     axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_down,
                     axis_a5_back_down_down, axis_a6_back_down_down,
                 ),
-                refused(status, refusal_back),
+                status_back,
             ),
             (
                 (
                     axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_down, axis_a5_front_up_down,
                     axis_a6_front_up_down,
                 ),
-                refused(status, refusal_front),
+                status_front,
             ),
             (
                 (
                     axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_down, axis_a5_back_up_down,
                     axis_a6_back_up_down,
                 ),
-                refused(status, refusal_back),
+                status_back,
             ),
             (
                 (
                     axis_a1_front, axis_a2_front_down, axis_a3_front_down, axis_a4_front_down_up,
                     axis_a5_front_down_up, axis_a6_front_down_up,
                 ),
-                refused(status, refusal_front),
+                status_front,
             ),
             (
                 (
                     axis_a1_back, axis_a2_back_down, axis_a3_back_down, axis_a4_back_down_up, axis_a5_back_down_up,
                     axis_a6_back_down_up,
                 ),
-                refused(status, refusal_back),
+                status_back,
             ),
             (
                 (
                     axis_a1_front, axis_a2_front_up, axis_a3_front_up, axis_a4_front_up_up, axis_a5_front_up_up,
                     axis_a6_front_up_up,
                 ),
-                refused(status, refusal_front),
+                status_front,
             ),
             (
                 (
                     axis_a1_back, axis_a2_back_up, axis_a3_back_up, axis_a4_back_up_up, axis_a5_back_up_up,
                     axis_a6_back_up_up,
                 ),
-                refused(status, refusal_back),
+                status_back,
             ),
         )

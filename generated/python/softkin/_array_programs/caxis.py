@@ -13,14 +13,14 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     nearest_period,
     passed,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -90,12 +90,12 @@ class ArrayPrograms(OrientationPrograms):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
-        axis_c = nearest_period(offset_c + atan2(heading_across, heading_along)/DEGREE, near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + degrees(heading_across, heading_along), near_c)  # C: its turn
         return (axis_c,), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -9,20 +9,22 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     nearest_on_arc,
     nearest_period,
     passed,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -89,17 +91,24 @@ class ArrayPrograms(Programs):
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(status, (absolute(ref_phi) <= 1e9) & (absolute(ref_theta) <= 1e9), Status.BAD_INPUT)
-        radius_theta = root(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = root(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
-        if everywhere(radius_theta > 1e-11*machine_scale):
-            direction_x_theta = x  # its reference where it is free
-            direction_y_theta = y
-        else:
+
+        def elsewhere_direction_x_theta(ref_theta: Real) -> Reals:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            # its reference where it is free
-            direction_x_theta = select(radius_theta > 1e-11*machine_scale, x, cos(free_theta))
-            direction_y_theta = select(radius_theta > 1e-11*machine_scale, y, sin(free_theta))
+            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_y_theta = sin(free_theta)
+            return (direction_x_theta, direction_y_theta)
+
+        direction_x_theta = x  # its reference where it is free
+        direction_y_theta = y
+        direction_x_theta, direction_y_theta = elsewhere(
+            radius_theta > 1e-11*machine_scale,
+            (direction_x_theta, direction_y_theta),
+            elsewhere_direction_x_theta,
+            (ref_theta,),
+        )
         open_theta = select(single_theta > 0.0, mid_theta, ref_theta)  # Theta: where its turn is open
         near_theta = select(
             absolute(turn_theta) > 0.0,
@@ -107,23 +116,22 @@ class ArrayPrograms(Programs):
             open_theta,
         )
         # Theta: its turn
-        axis_theta = nearest_period(offset_theta + atan2(direction_y_theta, direction_x_theta)/DEGREE, near_theta)
-        if everywhere(radius_phi > 1e-11*machine_scale):
-            direction_x_phi = z  # its reference where it is free
-            direction_y_phi = radius_theta
-        else:
+        axis_theta = nearest_period(offset_theta + degrees(direction_y_theta, direction_x_theta), near_theta)
+
+        def elsewhere_direction_x_phi(ref_phi: Real) -> Reals:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            # its reference where it is free
-            direction_x_phi = select(
-                radius_phi > 1e-11*machine_scale,
-                z,
-                cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)),
-            )
-            direction_y_phi = select(
-                radius_phi > 1e-11*machine_scale,
-                radius_theta,
-                sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE)),
-            )
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+            return (direction_x_phi, direction_y_phi)
+
+        direction_x_phi = z  # its reference where it is free
+        direction_y_phi = radius_theta
+        direction_x_phi, direction_y_phi = elsewhere(
+            radius_phi > 1e-11*machine_scale,
+            (direction_x_phi, direction_y_phi),
+            elsewhere_direction_x_phi,
+            (ref_phi,),
+        )
         axis_phi = offset_phi + atan2(direction_y_phi, direction_x_phi)/DEGREE
         return (axis_r, axis_theta, axis_phi), status
 

@@ -14,8 +14,8 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     nearest_period,
     passed,
     refused,
@@ -23,6 +23,7 @@ from softkin._array import (
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -209,7 +210,7 @@ class ArrayPrograms(Programs):
         span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
         span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
-        effective_a1 = root(along_a1*along_a1 + z*z)  # effective length that the angle turns
+        effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*inner_arm_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*inner_arm_1, effective_a1, 1.0)
@@ -231,7 +232,7 @@ class ArrayPrograms(Programs):
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = root(along_a2*along_a2 + z*z)  # effective length that the angle turns
+        effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*inner_arm_2, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*inner_arm_2, effective_a2, 1.0)
@@ -253,7 +254,7 @@ class ArrayPrograms(Programs):
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = root(along_a3*along_a3 + z*z)  # effective length that the angle turns
+        effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > 1e-9*inner_arm_3, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 1e-9*inner_arm_3, effective_a3, 1.0)
@@ -333,21 +334,21 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: its turn
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -417,7 +418,7 @@ class ArrayPrograms(Programs):
         span_1_x = x + tcp_radius_1*cos_azimuth_1 - base_radius_1*cos_azimuth_1  # rod 1
         span_1_y = y + tcp_radius_1*sin_azimuth_1 - base_radius_1*sin_azimuth_1  # rod 1
         along_a1 = span_1_x*cos_azimuth_1 + span_1_y*sin_azimuth_1
-        effective_a1 = root(along_a1*along_a1 + z*z)  # effective length that the angle turns
+        effective_a1 = sqrt(along_a1*along_a1 + z*z)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*inner_arm_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*inner_arm_1, effective_a1, 1.0)
@@ -439,7 +440,7 @@ class ArrayPrograms(Programs):
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
-        effective_a2 = root(along_a2*along_a2 + z*z)  # effective length that the angle turns
+        effective_a2 = sqrt(along_a2*along_a2 + z*z)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*inner_arm_2, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*inner_arm_2, effective_a2, 1.0)
@@ -461,7 +462,7 @@ class ArrayPrograms(Programs):
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
-        effective_a3 = root(along_a3*along_a3 + z*z)  # effective length that the angle turns
+        effective_a3 = sqrt(along_a3*along_a3 + z*z)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > 1e-9*inner_arm_3, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 1e-9*inner_arm_3, effective_a3, 1.0)
@@ -556,24 +557,21 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        # A1: its turn
-        axis_a1_outward = nearest_period(offset_a1 + atan2(sin_a1_outward, cos_a1_outward)/DEGREE, near_a1)
+        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        # A2: its turn
-        axis_a2_outward = nearest_period(offset_a2 + atan2(sin_a2_outward, cos_a2_outward)/DEGREE, near_a2)
+        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        # A3: its turn
-        axis_a3_outward = nearest_period(offset_a3 + atan2(sin_a3_outward, cos_a3_outward)/DEGREE, near_a3)
+        axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)  # A3: its turn
         cos_a3_inward = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3_inward/divisor_a3
         # rod 3
         pivot_3_x_inward = (
@@ -601,8 +599,7 @@ class ArrayPrograms(Programs):
         refusal_outward_outward_inward = select(
             type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0.0, 3.0,
         )
-        # A3: its turn
-        axis_a3_inward = nearest_period(offset_a3 + atan2(sin_a3_inward, cos_a3_inward)/DEGREE, near_a3)
+        axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)  # A3: its turn
         cos_a2_inward = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2_inward/divisor_a2
         # rod 2
         pivot_2_x_inward = (
@@ -630,8 +627,7 @@ class ArrayPrograms(Programs):
         refusal_outward_inward_outward = select(
             type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0.0, 3.0,
         )
-        # A2: its turn
-        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
+        axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
         type2_rods_coplanar_outward_inward_inward = (
             assembly_sign
             *(
@@ -672,8 +668,7 @@ class ArrayPrograms(Programs):
         refusal_inward_outward_outward = select(
             type2_rods_coplanar_inward_outward_outward >= min_type2_margin, 0.0, 3.0,
         )
-        # A1: its turn
-        axis_a1_inward = nearest_period(offset_a1 + atan2(sin_a1_inward, cos_a1_inward)/DEGREE, near_a1)
+        axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)  # A1: its turn
         type2_rods_coplanar_inward_outward_inward = (
             assembly_sign
             *(
@@ -711,13 +706,21 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = select(type2_rods_coplanar_inward_inward_inward >= min_type2_margin, 0.0, 3.0)
+        status_outward_outward_outward = refused(status, refusal_outward_outward_outward)
+        status_inward_outward_outward = refused(status, refusal_inward_outward_outward)
+        status_outward_inward_outward = refused(status, refusal_outward_inward_outward)
+        status_inward_inward_outward = refused(status, refusal_inward_inward_outward)
+        status_outward_outward_inward = refused(status, refusal_outward_outward_inward)
+        status_inward_outward_inward = refused(status, refusal_inward_outward_inward)
+        status_outward_inward_inward = refused(status, refusal_outward_inward_inward)
+        status_inward_inward_inward = refused(status, refusal_inward_inward_inward)
         return (
-            ((axis_a1_outward, axis_a2_outward, axis_a3_outward), refused(status, refusal_outward_outward_outward)),
-            ((axis_a1_inward, axis_a2_outward, axis_a3_outward), refused(status, refusal_inward_outward_outward)),
-            ((axis_a1_outward, axis_a2_inward, axis_a3_outward), refused(status, refusal_outward_inward_outward)),
-            ((axis_a1_inward, axis_a2_inward, axis_a3_outward), refused(status, refusal_inward_inward_outward)),
-            ((axis_a1_outward, axis_a2_outward, axis_a3_inward), refused(status, refusal_outward_outward_inward)),
-            ((axis_a1_inward, axis_a2_outward, axis_a3_inward), refused(status, refusal_inward_outward_inward)),
-            ((axis_a1_outward, axis_a2_inward, axis_a3_inward), refused(status, refusal_outward_inward_inward)),
-            ((axis_a1_inward, axis_a2_inward, axis_a3_inward), refused(status, refusal_inward_inward_inward)),
+            ((axis_a1_outward, axis_a2_outward, axis_a3_outward), status_outward_outward_outward),
+            ((axis_a1_inward, axis_a2_outward, axis_a3_outward), status_inward_outward_outward),
+            ((axis_a1_outward, axis_a2_inward, axis_a3_outward), status_outward_inward_outward),
+            ((axis_a1_inward, axis_a2_inward, axis_a3_outward), status_inward_inward_outward),
+            ((axis_a1_outward, axis_a2_outward, axis_a3_inward), status_outward_outward_inward),
+            ((axis_a1_inward, axis_a2_outward, axis_a3_inward), status_inward_outward_inward),
+            ((axis_a1_outward, axis_a2_inward, axis_a3_inward), status_outward_inward_inward),
+            ((axis_a1_inward, axis_a2_inward, axis_a3_inward), status_inward_inward_inward),
         )

@@ -13,14 +13,14 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     nearest_period,
     passed,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -117,7 +117,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         axis_x = offset_x + x
@@ -126,7 +126,7 @@ class ArrayPrograms(Programs):
         sin_r = direction_r*heading_across
         open_r = select(single_r > 0.0, mid_r, ref_r)  # R: where its turn is open
         near_r = select(absolute(turn_r) > 0.0, select(turn_r > 0.0, 360.0*turn_r - 360.0, 360.0*turn_r), open_r)
-        axis_r = nearest_period(offset_r + atan2(sin_r, heading_along)/DEGREE, near_r)  # R: its turn
+        axis_r = nearest_period(offset_r + degrees(sin_r, heading_along), near_r)  # R: its turn
         return (axis_x, axis_y, axis_z, axis_r), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -22,6 +22,7 @@ from softkin._array import (
     settled,
     sin,
     solve,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -153,7 +154,7 @@ class ArrayPrograms(StartedPrograms):
             turned_33 = cos_pitch*cos_roll
             arm_1_z = start_arm_1_x*turned_31 + start_arm_1_y*turned_32 + start_arm_1_z*turned_33
             span_1_z = arm_1_z + z - base_1_z
-            length_1 = root(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
+            length_1 = sqrt(span_1_x*span_1_x + span_1_y*span_1_y + span_1_z*span_1_z)
             error_1 = length_1 - l1  # by what leg 1 would be too long
             arm_2_x = start_arm_2_x*turned_11 + start_arm_2_y*turned_12 + start_arm_2_z*turned_13
             span_2_x = arm_2_x + x - base_2_x  # leg 2: from its joint on the base to its joint on the platform
@@ -161,7 +162,7 @@ class ArrayPrograms(StartedPrograms):
             span_2_y = arm_2_y + y - base_2_y
             arm_2_z = start_arm_2_x*turned_31 + start_arm_2_y*turned_32 + start_arm_2_z*turned_33
             span_2_z = arm_2_z + z - base_2_z
-            length_2 = root(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
+            length_2 = sqrt(span_2_x*span_2_x + span_2_y*span_2_y + span_2_z*span_2_z)
             error_2 = length_2 - l2  # by what leg 2 would be too long
             arm_3_x = start_arm_3_x*turned_11 + start_arm_3_y*turned_12 + start_arm_3_z*turned_13
             span_3_x = arm_3_x + x - base_3_x  # leg 3: from its joint on the base to its joint on the platform
@@ -169,7 +170,7 @@ class ArrayPrograms(StartedPrograms):
             span_3_y = arm_3_y + y - base_3_y
             arm_3_z = start_arm_3_x*turned_31 + start_arm_3_y*turned_32 + start_arm_3_z*turned_33
             span_3_z = arm_3_z + z - base_3_z
-            length_3 = root(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
+            length_3 = sqrt(span_3_x*span_3_x + span_3_y*span_3_y + span_3_z*span_3_z)
             error_3 = length_3 - l3  # by what leg 3 would be too long
             arm_4_x = start_arm_4_x*turned_11 + start_arm_4_y*turned_12 + start_arm_4_z*turned_13
             span_4_x = arm_4_x + x - base_4_x  # leg 4: from its joint on the base to its joint on the platform
@@ -177,7 +178,7 @@ class ArrayPrograms(StartedPrograms):
             span_4_y = arm_4_y + y - base_4_y
             arm_4_z = start_arm_4_x*turned_31 + start_arm_4_y*turned_32 + start_arm_4_z*turned_33
             span_4_z = arm_4_z + z - base_4_z
-            length_4 = root(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
+            length_4 = sqrt(span_4_x*span_4_x + span_4_y*span_4_y + span_4_z*span_4_z)
             error_4 = length_4 - l4  # by what leg 4 would be too long
             arm_5_x = start_arm_5_x*turned_11 + start_arm_5_y*turned_12 + start_arm_5_z*turned_13
             span_5_x = arm_5_x + x - base_5_x  # leg 5: from its joint on the base to its joint on the platform
@@ -185,7 +186,7 @@ class ArrayPrograms(StartedPrograms):
             span_5_y = arm_5_y + y - base_5_y
             arm_5_z = start_arm_5_x*turned_31 + start_arm_5_y*turned_32 + start_arm_5_z*turned_33
             span_5_z = arm_5_z + z - base_5_z
-            length_5 = root(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
+            length_5 = sqrt(span_5_x*span_5_x + span_5_y*span_5_y + span_5_z*span_5_z)
             error_5 = length_5 - l5  # by what leg 5 would be too long
             arm_6_x = start_arm_6_x*turned_11 + start_arm_6_y*turned_12 + start_arm_6_z*turned_13
             span_6_x = arm_6_x + x - base_6_x  # leg 6: from its joint on the base to its joint on the platform
@@ -193,7 +194,7 @@ class ArrayPrograms(StartedPrograms):
             span_6_y = arm_6_y + y - base_6_y
             arm_6_z = start_arm_6_x*turned_31 + start_arm_6_y*turned_32 + start_arm_6_z*turned_33
             span_6_z = arm_6_z + z - base_6_z
-            length_6 = root(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
+            length_6 = sqrt(span_6_x*span_6_x + span_6_y*span_6_y + span_6_z*span_6_z)
             error_6 = length_6 - l6  # by what leg 6 would be too long
             # whether the rods fit
             fit = select(

@@ -14,9 +14,9 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -24,6 +24,7 @@ from softkin._array import (
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -202,7 +203,7 @@ class ArrayPrograms(Programs):
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
-        effective_a1 = root(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
@@ -239,7 +240,7 @@ class ArrayPrograms(Programs):
             (link_length_1*link_length_2*cos_a1 + link_length_1*link_length_3*cos_a1 - link_length_2*span_rear_y)
             /link_length_2
         )
-        effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*link_length_5, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*link_length_5, effective_a2, 1.0)
@@ -339,14 +340,14 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -396,7 +397,7 @@ class ArrayPrograms(Programs):
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
         # effective length that the angle turns
-        effective_a1 = root(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
+        effective_a1 = sqrt(span_upper_x*span_upper_x + span_upper_y*span_upper_y)
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
@@ -440,7 +441,7 @@ class ArrayPrograms(Programs):
             /link_length_2
         )
         # effective length that the angle turns
-        effective_a2_left = root(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
+        effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
         divisor_a2_left = select(effective_a2_left > 1e-9*link_length_5, effective_a2_left, 1.0)
         swing_scale_a2_left = 2.0*divisor_a2_left*link_length_5  # a2: law of cosines in the rod rear equation
         cos_swing_a2_left = (
@@ -500,237 +501,131 @@ class ArrayPrograms(Programs):
         sin_a2_left_right = (
             across_a2_left*cos_swing_a2_left/divisor_a2_left + along_a2_left*sin_swing_a2_left_right/divisor_a2_left
         )
-        if everywhere((sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5)):
-            pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
-            pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-            # rod rear
-            pivot_rear_x_left_left = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_left
+
+        def elsewhere_refusal_left_left() -> Reals:
+            refusal_left_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_left_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            return (refusal_left_left, refusal_left_right)
+
+        pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
+        pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
+        # rod rear
+        pivot_rear_x_left_left = (
+            link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
+            - link_length_5*cos_a2_left_left
+        )
+        # rod rear
+        pivot_rear_y_left_left = (
+            link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
+            + link_length_1*link_length_3*cos_a1_left/link_length_2
+        )
+        centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
+        rod_1_x_left = x - centre_1_x_left
+        centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
+        rod_1_y_left = y - centre_1_y_left
+        centre_2_x_left_left = (
+            (
+                link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
+                - link_length_2*pivot_rear_y_left_left*swap_xy
             )
-            # rod rear
-            pivot_rear_y_left_left = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
+            /link_length_3
+        )
+        rod_2_x_left_left = x - centre_2_x_left_left
+        centre_2_y_left_left = (
+            (
+                link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
+                - link_length_2*pivot_rear_x_left_left*swap_xy
             )
-            centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
-            rod_1_x_left = x - centre_1_x_left
-            centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
-            rod_1_y_left = y - centre_1_y_left
-            centre_2_x_left_left = (
-                (
-                    link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
-                    - link_length_2*pivot_rear_y_left_left*swap_xy
+            /link_length_3
+        )
+        rod_2_y_left_left = y - centre_2_y_left_left
+        type2_arms_aligned_left_left = (
+            assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
+            /(
+                root(
+                    link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
+                    + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
+                    + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
+                    - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
+                    - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
+                    - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
                 )
-                /link_length_3
-            )
-            rod_2_x_left_left = x - centre_2_x_left_left
-            centre_2_y_left_left = (
-                (
-                    link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
-                    - link_length_2*pivot_rear_x_left_left*swap_xy
+                *root(
+                    link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
+                    + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
+                    + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
+                    - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
+                    - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
+                    - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
                 )
-                /link_length_3
+                *link_length_2
             )
-            rod_2_y_left_left = y - centre_2_y_left_left
-            type2_arms_aligned_left_left = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
-                        + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
-                        - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
-                        - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                    )
-                    *link_length_2
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0)
+        # rod rear
+        pivot_rear_x_left_right = (
+            link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
+            - link_length_5*cos_a2_left_right
+        )
+        # rod rear
+        pivot_rear_y_left_right = (
+            link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
+            + link_length_1*link_length_3*cos_a1_left/link_length_2
+        )
+        centre_2_x_left_right = (
+            (
+                link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
+                - link_length_2*pivot_rear_y_left_right*swap_xy
+            )
+            /link_length_3
+        )
+        rod_2_x_left_right = x - centre_2_x_left_right
+        centre_2_y_left_right = (
+            (
+                link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
+                - link_length_2*pivot_rear_x_left_right*swap_xy
+            )
+            /link_length_3
+        )
+        rod_2_y_left_right = y - centre_2_y_left_right
+        type2_arms_aligned_left_right = (
+            assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
+            /(
+                root(
+                    link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
+                    + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
+                    + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
+                    - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
+                    - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
+                    - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
                 )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0)
-            # rod rear
-            pivot_rear_x_left_right = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_right
-            )
-            # rod rear
-            pivot_rear_y_left_right = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
-            )
-            centre_2_x_left_right = (
-                (
-                    link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
-                    - link_length_2*pivot_rear_y_left_right*swap_xy
+                *root(
+                    link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
+                    + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
+                    + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
+                    - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
+                    - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
+                    - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
                 )
-                /link_length_3
+                *link_length_2
             )
-            rod_2_x_left_right = x - centre_2_x_left_right
-            centre_2_y_left_right = (
-                (
-                    link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
-                    - link_length_2*pivot_rear_x_left_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_left_right = y - centre_2_y_left_right
-            type2_arms_aligned_left_right = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
-                        + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
-                        - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
-                        - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0)
-        else:
-            pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
-            pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
-            # rod rear
-            pivot_rear_x_left_left = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_left
-            )
-            # rod rear
-            pivot_rear_y_left_left = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
-            )
-            centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
-            rod_1_x_left = x - centre_1_x_left
-            centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
-            rod_1_y_left = y - centre_1_y_left
-            centre_2_x_left_left = (
-                (
-                    link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
-                    - link_length_2*pivot_rear_y_left_left*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_x_left_left = x - centre_2_x_left_left
-            centre_2_y_left_left = (
-                (
-                    link_length_2*pivot_rear_y_left_left*swap_xy - link_length_2*pivot_rear_y_left_left
-                    - link_length_2*pivot_rear_x_left_left*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_left_left = y - centre_2_y_left_left
-            type2_arms_aligned_left_left = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
-                        + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
-                        - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
-                        - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # a2: its effective length is too short, a2: out of reach
-            refusal_left = select((sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5), 0.0, 3.0)
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_left = select(
-                refusal_left > 0.0,
-                refusal_left,
-                select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0),
-            )
-            # rod rear
-            pivot_rear_x_left_right = (
-                link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
-                - link_length_5*cos_a2_left_right
-            )
-            # rod rear
-            pivot_rear_y_left_right = (
-                link_length_1*cos_a1_left + link_length_5*sin_a2_left_right
-                + link_length_1*link_length_3*cos_a1_left/link_length_2
-            )
-            centre_2_x_left_right = (
-                (
-                    link_length_2*pivot_rear_x_left_right*swap_xy - link_length_2*pivot_rear_x_left_right
-                    - link_length_2*pivot_rear_y_left_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_x_left_right = x - centre_2_x_left_right
-            centre_2_y_left_right = (
-                (
-                    link_length_2*pivot_rear_y_left_right*swap_xy - link_length_2*pivot_rear_y_left_right
-                    - link_length_2*pivot_rear_x_left_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_left_right = y - centre_2_y_left_right
-            type2_arms_aligned_left_right = (
-                assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                        + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                        - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                        - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
-                        + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
-                        - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
-                        - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_right = select(
-                refusal_left > 0.0,
-                refusal_left,
-                select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0),
-            )
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0)
+        refusal_left_left, refusal_left_right = elsewhere(
+            (sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5),
+            (refusal_left_left, refusal_left_right),
+            elsewhere_refusal_left_left,
+            (),
+        )
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_left = nearest_period(offset_a1 + atan2(sin_a1_left, cos_a1_left)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_left = nearest_period(offset_a1 + degrees(sin_a1_left, cos_a1_left), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -738,9 +633,9 @@ class ArrayPrograms(Programs):
             open_a2,
         )
         # A2: its turn
-        axis_a2_left_left = nearest_period(offset_a2 + atan2(sin_a2_left_left, cos_a2_left_left)/DEGREE, near_a2)
+        axis_a2_left_left = nearest_period(offset_a2 + degrees(sin_a2_left_left, cos_a2_left_left), near_a2)
         # A2: its turn
-        axis_a2_left_right = nearest_period(offset_a2 + atan2(sin_a2_left_right, cos_a2_left_right)/DEGREE, near_a2)
+        axis_a2_left_right = nearest_period(offset_a2 + degrees(sin_a2_left_right, cos_a2_left_right), near_a2)
         sin_a1_right = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1_right/divisor_a1
         cos_a1_right = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1_right/divisor_a1
         along_a2_right = (
@@ -758,7 +653,7 @@ class ArrayPrograms(Programs):
             /link_length_2
         )
         # effective length that the angle turns
-        effective_a2_right = root(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
+        effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
         divisor_a2_right = select(effective_a2_right > 1e-9*link_length_5, effective_a2_right, 1.0)
         swing_scale_a2_right = 2.0*divisor_a2_right*link_length_5  # a2: law of cosines in the rod rear equation
         cos_swing_a2_right = (
@@ -822,240 +717,136 @@ class ArrayPrograms(Programs):
             across_a2_right*cos_swing_a2_right/divisor_a2_right
             + along_a2_right*sin_swing_a2_right_right/divisor_a2_right
         )
-        if everywhere((sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5)):
-            pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-            pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
-            # rod rear
-            pivot_rear_x_right_left = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_left
-            )
-            # rod rear
-            pivot_rear_y_right_left = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
-            )
-            centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
-            rod_1_x_right = x - centre_1_x_right
-            centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
-            rod_1_y_right = y - centre_1_y_right
-            centre_2_x_right_left = (
-                (
-                    link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
-                    - link_length_2*pivot_rear_y_right_left*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_x_right_left = x - centre_2_x_right_left
-            centre_2_y_right_left = (
-                (
-                    link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
-                    - link_length_2*pivot_rear_x_right_left*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_right_left = y - centre_2_y_right_left
-            type2_arms_aligned_right_left = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
-                        + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
-                        - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
-                        - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0)
-            # rod rear
-            pivot_rear_x_right_right = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_right
-            )
-            # rod rear
-            pivot_rear_y_right_right = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
-            )
-            centre_2_x_right_right = (
-                (
-                    link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
-                    - link_length_2*pivot_rear_y_right_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_x_right_right = x - centre_2_x_right_right
-            centre_2_y_right_right = (
-                (
-                    link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
-                    - link_length_2*pivot_rear_x_right_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_right_right = y - centre_2_y_right_right
-            type2_arms_aligned_right_right = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
-                        + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
-                        - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
-                        - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
-        else:
-            pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
-            pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
-            # rod rear
-            pivot_rear_x_right_left = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_left
-            )
-            # rod rear
-            pivot_rear_y_right_left = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
-            )
-            centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
-            rod_1_x_right = x - centre_1_x_right
-            centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
-            rod_1_y_right = y - centre_1_y_right
-            centre_2_x_right_left = (
-                (
-                    link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
-                    - link_length_2*pivot_rear_y_right_left*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_x_right_left = x - centre_2_x_right_left
-            centre_2_y_right_left = (
-                (
-                    link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
-                    - link_length_2*pivot_rear_x_right_left*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_right_left = y - centre_2_y_right_left
-            type2_arms_aligned_right_left = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
-                        + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
-                        - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
-                        - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # a2: its effective length is too short, a2: out of reach
-            refusal_right = select((sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5), 0.0, 3.0)
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_left = select(
-                refusal_right > 0.0,
-                refusal_right,
-                select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0),
-            )
-            # rod rear
-            pivot_rear_x_right_right = (
-                link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
-                - link_length_5*cos_a2_right_right
-            )
-            # rod rear
-            pivot_rear_y_right_right = (
-                link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
-                + link_length_1*link_length_3*cos_a1_right/link_length_2
-            )
-            centre_2_x_right_right = (
-                (
-                    link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
-                    - link_length_2*pivot_rear_y_right_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_x_right_right = x - centre_2_x_right_right
-            centre_2_y_right_right = (
-                (
-                    link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
-                    - link_length_2*pivot_rear_x_right_right*swap_xy
-                )
-                /link_length_3
-            )
-            rod_2_y_right_right = y - centre_2_y_right_right
-            type2_arms_aligned_right_right = (
-                assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
-                /(
-                    root(
-                        link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                        + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                        + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                        - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                        - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                        - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
-                    )
-                    *root(
-                        link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
-                        + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
-                        + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                        - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
-                        - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
-                        - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                    )
-                    *link_length_2
-                )
-            )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_right = select(
-                refusal_right > 0.0,
-                refusal_right,
-                select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0),
-            )
-        axis_a1_right = nearest_period(offset_a1 + atan2(sin_a1_right, cos_a1_right)/DEGREE, near_a1)  # A1: its turn
-        # A2: its turn
-        axis_a2_right_left = nearest_period(offset_a2 + atan2(sin_a2_right_left, cos_a2_right_left)/DEGREE, near_a2)
-        # A2: its turn
-        axis_a2_right_right = nearest_period(
-            offset_a2 + atan2(sin_a2_right_right, cos_a2_right_right)/DEGREE, near_a2,
+
+        def elsewhere_refusal_right_left() -> Reals:
+            refusal_right_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_right_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            return (refusal_right_left, refusal_right_right)
+
+        pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
+        pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+        # rod rear
+        pivot_rear_x_right_left = (
+            link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
+            - link_length_5*cos_a2_right_left
         )
+        # rod rear
+        pivot_rear_y_right_left = (
+            link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
+            + link_length_1*link_length_3*cos_a1_right/link_length_2
+        )
+        centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
+        rod_1_x_right = x - centre_1_x_right
+        centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
+        rod_1_y_right = y - centre_1_y_right
+        centre_2_x_right_left = (
+            (
+                link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
+                - link_length_2*pivot_rear_y_right_left*swap_xy
+            )
+            /link_length_3
+        )
+        rod_2_x_right_left = x - centre_2_x_right_left
+        centre_2_y_right_left = (
+            (
+                link_length_2*pivot_rear_y_right_left*swap_xy - link_length_2*pivot_rear_y_right_left
+                - link_length_2*pivot_rear_x_right_left*swap_xy
+            )
+            /link_length_3
+        )
+        rod_2_y_right_left = y - centre_2_y_right_left
+        type2_arms_aligned_right_left = (
+            assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
+            /(
+                root(
+                    link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
+                    + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
+                    + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
+                    - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
+                    - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
+                    - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
+                )
+                *root(
+                    link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
+                    + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
+                    + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
+                    - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
+                    - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
+                    - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
+                )
+                *link_length_2
+            )
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0)
+        # rod rear
+        pivot_rear_x_right_right = (
+            link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
+            - link_length_5*cos_a2_right_right
+        )
+        # rod rear
+        pivot_rear_y_right_right = (
+            link_length_1*cos_a1_right + link_length_5*sin_a2_right_right
+            + link_length_1*link_length_3*cos_a1_right/link_length_2
+        )
+        centre_2_x_right_right = (
+            (
+                link_length_2*pivot_rear_x_right_right*swap_xy - link_length_2*pivot_rear_x_right_right
+                - link_length_2*pivot_rear_y_right_right*swap_xy
+            )
+            /link_length_3
+        )
+        rod_2_x_right_right = x - centre_2_x_right_right
+        centre_2_y_right_right = (
+            (
+                link_length_2*pivot_rear_y_right_right*swap_xy - link_length_2*pivot_rear_y_right_right
+                - link_length_2*pivot_rear_x_right_right*swap_xy
+            )
+            /link_length_3
+        )
+        rod_2_y_right_right = y - centre_2_y_right_right
+        type2_arms_aligned_right_right = (
+            assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
+            /(
+                root(
+                    link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
+                    + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
+                    + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
+                    - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
+                    - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
+                    - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
+                )
+                *root(
+                    link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
+                    + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
+                    + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
+                    - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
+                    - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
+                    - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
+                )
+                *link_length_2
+            )
+        )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
+        refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
+        refusal_right_left, refusal_right_right = elsewhere(
+            (sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5),
+            (refusal_right_left, refusal_right_right),
+            elsewhere_refusal_right_left,
+            (),
+        )
+        axis_a1_right = nearest_period(offset_a1 + degrees(sin_a1_right, cos_a1_right), near_a1)  # A1: its turn
+        # A2: its turn
+        axis_a2_right_left = nearest_period(offset_a2 + degrees(sin_a2_right_left, cos_a2_right_left), near_a2)
+        # A2: its turn
+        axis_a2_right_right = nearest_period(offset_a2 + degrees(sin_a2_right_right, cos_a2_right_right), near_a2)
+        status_left_left = refused(status, refusal_left_left)
+        status_right_left = refused(status, refusal_right_left)
+        status_left_right = refused(status, refusal_left_right)
+        status_right_right = refused(status, refusal_right_right)
         return (
-            ((axis_a1_left, axis_a2_left_left), refused(status, refusal_left_left)),
-            ((axis_a1_right, axis_a2_right_left), refused(status, refusal_right_left)),
-            ((axis_a1_left, axis_a2_left_right), refused(status, refusal_left_right)),
-            ((axis_a1_right, axis_a2_right_right), refused(status, refusal_right_right)),
+            ((axis_a1_left, axis_a2_left_left), status_left_left),
+            ((axis_a1_right, axis_a2_right_left), status_right_left),
+            ((axis_a1_left, axis_a2_left_right), status_left_right),
+            ((axis_a1_right, axis_a2_right_right), status_right_right),
         )

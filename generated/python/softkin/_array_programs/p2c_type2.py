@@ -14,8 +14,8 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     nearest_period,
     passed,
     refused,
@@ -23,6 +23,7 @@ from softkin._array import (
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -116,7 +117,7 @@ class ArrayPrograms(Programs):
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         span_1_x = displacement + x - 0.5*tcp_link_distance  # rod 1
-        effective_a1 = root(span_1_x*span_1_x + y*y)  # effective length that the angle turns
+        effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*inner_arm, effective_a1, 1.0)
@@ -129,7 +130,7 @@ class ArrayPrograms(Programs):
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
         span_2_x = 0.5*tcp_link_distance + x - displacement  # rod 2
-        effective_a2 = root(span_2_x*span_2_x + y*y)  # effective length that the angle turns
+        effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*inner_arm, effective_a2, 1.0)
@@ -166,14 +167,14 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         return (axis_a1, axis_a2), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -219,7 +220,7 @@ class ArrayPrograms(Programs):
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         span_1_x = displacement + x - 0.5*tcp_link_distance  # rod 1
-        effective_a1 = root(span_1_x*span_1_x + y*y)  # effective length that the angle turns
+        effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*inner_arm, effective_a1, 1.0)
@@ -232,7 +233,7 @@ class ArrayPrograms(Programs):
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
         span_2_x = 0.5*tcp_link_distance + x - displacement  # rod 2
-        effective_a2 = root(span_2_x*span_2_x + y*y)  # effective length that the angle turns
+        effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*inner_arm, effective_a2, 1.0)
@@ -271,16 +272,14 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        # A1: its turn
-        axis_a1_outward = nearest_period(offset_a1 + atan2(sin_a1_outward, cos_a1_outward)/DEGREE, near_a1)
+        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        # A2: its turn
-        axis_a2_outward = nearest_period(offset_a2 + atan2(sin_a2_outward, cos_a2_outward)/DEGREE, near_a2)
+        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
         cos_a2_inward = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2_outward/divisor_a2
         pivot_2_x_inward = displacement + inner_arm*cos_a2_inward - 0.5*tcp_link_distance  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
@@ -292,8 +291,7 @@ class ArrayPrograms(Programs):
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = select(type2_arms_aligned_outward_inward >= min_type2_margin, 0.0, 3.0)
-        # A2: its turn
-        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
+        axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
         cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1_inward/divisor_a1
         pivot_1_x_inward = 0.5*tcp_link_distance + inner_arm*cos_a1_inward - displacement  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
@@ -305,16 +303,19 @@ class ArrayPrograms(Programs):
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_outward = select(type2_arms_aligned_inward_outward >= min_type2_margin, 0.0, 3.0)
-        # A1: its turn
-        axis_a1_inward = nearest_period(offset_a1 + atan2(sin_a1_inward, cos_a1_inward)/DEGREE, near_a1)
+        axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)  # A1: its turn
         type2_arms_aligned_inward_inward = (
             assembly_sign*(rod_1_x_inward*rod_2_y_inward - rod_1_y_inward*rod_2_x_inward)/(outer_arm*outer_arm)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_inward = select(type2_arms_aligned_inward_inward >= min_type2_margin, 0.0, 3.0)
+        status_outward_outward = refused(status, refusal_outward_outward)
+        status_inward_outward = refused(status, refusal_inward_outward)
+        status_outward_inward = refused(status, refusal_outward_inward)
+        status_inward_inward = refused(status, refusal_inward_inward)
         return (
-            ((axis_a1_outward, axis_a2_outward), refused(status, refusal_outward_outward)),
-            ((axis_a1_inward, axis_a2_outward), refused(status, refusal_inward_outward)),
-            ((axis_a1_outward, axis_a2_inward), refused(status, refusal_outward_inward)),
-            ((axis_a1_inward, axis_a2_inward), refused(status, refusal_inward_inward)),
+            ((axis_a1_outward, axis_a2_outward), status_outward_outward),
+            ((axis_a1_inward, axis_a2_outward), status_inward_outward),
+            ((axis_a1_outward, axis_a2_inward), status_outward_inward),
+            ((axis_a1_inward, axis_a2_inward), status_inward_inward),
         )

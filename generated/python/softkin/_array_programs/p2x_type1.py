@@ -215,9 +215,13 @@ class ArrayPrograms(Programs):
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0)
+        status_left_right = refused(status, refusal_left_right)
+        status_right_right = refused(status, refusal_right_right)
+        status_left_left = refused(status, refusal_left_left)
+        status_right_left = refused(status, refusal_right_left)
         return (
-            ((axis_a1_left, axis_a2_right), refused(status, refusal_left_right)),
-            ((axis_a1_right, axis_a2_right), refused(status, refusal_right_right)),
-            ((axis_a1_left, axis_a2_left), refused(status, refusal_left_left)),
-            ((axis_a1_right, axis_a2_left), refused(status, refusal_right_left)),
+            ((axis_a1_left, axis_a2_right), status_left_right),
+            ((axis_a1_right, axis_a2_right), status_right_right),
+            ((axis_a1_left, axis_a2_left), status_left_left),
+            ((axis_a1_right, axis_a2_left), status_right_left),
         )

@@ -9,19 +9,20 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     nearest_period,
     passed,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -79,17 +80,25 @@ class ArrayPrograms(Programs):
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(status, absolute(ref_c) <= 1e9, Status.BAD_INPUT)
-        radius_c = root(x*x + y*y)  # c: direction and distance of a point
-        if everywhere(radius_c > 1e-11*machine_scale):
-            direction_x_c = x  # its reference where it is free
-            direction_y_c = y
-        else:
+        radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+
+        def elsewhere_direction_x_c(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = select(radius_c > 1e-11*machine_scale, x, cos(free_c))  # its reference where it is free
-            direction_y_c = select(radius_c > 1e-11*machine_scale, y, sin(free_c))
+            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_y_c = sin(free_c)
+            return (direction_x_c, direction_y_c)
+
+        direction_x_c = x  # its reference where it is free
+        direction_y_c = y
+        direction_x_c, direction_y_c = elsewhere(
+            radius_c > 1e-11*machine_scale,
+            (direction_x_c, direction_y_c),
+            elsewhere_direction_x_c,
+            (ref_c,),
+        )
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
-        axis_c = nearest_period(offset_c + atan2(direction_y_c, direction_x_c)/DEGREE, near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
         axis_r = offset_r + radius_c
         axis_z = offset_z + z
         return (axis_c, axis_r, axis_z), status

@@ -10,13 +10,14 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     nearest_period,
     passed,
     refused,
@@ -24,6 +25,7 @@ from softkin._array import (
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -134,27 +136,27 @@ class ArrayPrograms(Programs):
             (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
             Status.BAD_INPUT,
         )
-        distance_q1 = root(x*x + y*y)  # q1: of the point from its axis
+        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = root(sine_square_q1)*sigma_arm
-            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
-            sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = root(sine_square_q1)*sigma_arm
-            # its reference where it is free
-            cos_q1 = select(distance_q1 > 1e-11*machine_scale, (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1, cos(free_a1))
-            sin_q1 = select(distance_q1 > 1e-11*machine_scale, (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1, sin(free_a1))
+            cos_q1 = cos(free_a1)  # its reference where it is free
+            sin_q1 = sin(free_a1)
+            return (cos_q1, sin_q1)
+
+        cos_swing_q1 = -d3/divisor_q1
+        sin_swing_q1 = root(sine_square_q1)*sigma_arm
+        cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
+        sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
+        cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach = root(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
             (effective_q3_2 + reach - a2)*(a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)
@@ -168,37 +170,35 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_q1, cos_q1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
         sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
         cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_q2 = -effective_q3_2*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
-            direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
-        else:
+
+        def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2 = -effective_q3_2*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2 = select(
-                reach > 1e-11*machine_scale,
-                arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1,
-                cos(free_a2),
-            )
-            direction_y_q2 = select(
-                reach > 1e-11*machine_scale,
-                arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1,
-                sin(free_a2),
-            )
+            direction_x_q2 = cos(free_a2)
+            direction_y_q2 = sin(free_a2)
+            return (direction_x_q2, direction_y_q2)
+
+        arm_along_q2 = -effective_q3_2*sin_swing_q3
+        arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2 = arm_across_q2*wrist_y_from_q1 + arm_along_q2*wrist_x_from_q1
+        direction_y_q2 = arm_along_q2*wrist_y_from_q1 - arm_across_q2*wrist_x_from_q1
+        direction_x_q2, direction_y_q2 = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_q2, direction_y_q2),
+            elsewhere_direction_x_q2,
+            (ref_a2,),
+        )
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(direction_y_q2, direction_x_q2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(direction_y_q2, direction_x_q2), near_a2)  # A2: its turn
         cos_q3 = a3*cos_swing_q3/effective_q3_2 - d4*sin_swing_q3/effective_q3_2
         sin_q3 = a3*sin_swing_q3/effective_q3_2 + d4*cos_swing_q3/effective_q3_2
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
@@ -207,7 +207,7 @@ class ArrayPrograms(Programs):
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_q3, cos_q3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -263,48 +263,36 @@ class ArrayPrograms(Programs):
             (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
             Status.BAD_INPUT,
         )
-        distance_q1 = root(x*x + y*y)  # q1: of the point from its axis
+        distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         # q1: aimed by the z_from_q1 equation
         divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
         sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
         # q1: out of reach
         require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
-        if everywhere(distance_q1 > 1e-11*machine_scale):
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = root(sine_square_q1)
-            cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
-            cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-            sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
-        else:
+
+        def elsewhere_cos_q1_front(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1_front = root(sine_square_q1)
-            # its reference where it is free
-            cos_q1_front = select(
-                distance_q1 > 1e-11*machine_scale,
-                (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_front = select(
-                distance_q1 > 1e-11*machine_scale,
-                (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1,
-                sin(free_a1),
-            )
-            # its reference where it is free
-            cos_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1,
-                cos(free_a1),
-            )
-            sin_q1_back = select(
-                distance_q1 > 1e-11*machine_scale,
-                (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1,
-                sin(free_a1),
-            )
+            cos_q1_front = cos(free_a1)  # its reference where it is free
+            sin_q1_front = sin(free_a1)
+            cos_q1_back = cos_q1_front  # its reference where it is free
+            sin_q1_back = sin_q1_front
+            return (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back)
+
+        cos_swing_q1 = -d3/divisor_q1
+        sin_swing_q1_front = root(sine_square_q1)
+        cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+        sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
+        cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
+        sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
+        cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back = elsewhere(
+            distance_q1 > 1e-11*machine_scale,
+            (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back),
+            elsewhere_cos_q1_front,
+            (ref_a1,),
+        )
         wrist_x_from_q1_front = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach_front = root(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
+        reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3_front = (
             (effective_q3_2 + reach_front - a2)*(a2 + effective_q3_2 + reach_front)
@@ -318,48 +306,41 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_front = nearest_period(offset_a1 + atan2(sin_q1_front, cos_q1_front)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
         sin_swing_q3_front_up = root(sine_square_q3_front)
         cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
-        if everywhere(reach_front > 1e-11*machine_scale):
-            arm_along_q2_front_down = effective_q3_2*sin_swing_q3_front_up
-            arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_front_down = (
-                arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
-            )
-            direction_y_q2_front_down = (
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
-            )
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
-            direction_y_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
-        else:
+
+        def elsewhere_direction_x_q2_front_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_front_down = effective_q3_2*sin_swing_q3_front_up
-            arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_front_down = select(
-                reach_front > 1e-11*machine_scale,
-                arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front,
-                cos(free_a2),
-            )
-            direction_y_q2_front_down = select(
-                reach_front > 1e-11*machine_scale,
-                arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front,
-                sin(free_a2),
-            )
+            direction_x_q2_front_down = cos(free_a2)
+            direction_y_q2_front_down = sin(free_a2)
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_front_up = select(
-                reach_front > 1e-11*machine_scale,
-                arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front,
-                cos(free_a2),
+            direction_x_q2_front_up = direction_x_q2_front_down
+            direction_y_q2_front_up = direction_y_q2_front_down
+            return (
+                direction_x_q2_front_down, direction_y_q2_front_down, direction_x_q2_front_up, direction_y_q2_front_up,
             )
-            direction_y_q2_front_up = select(
-                reach_front > 1e-11*machine_scale,
-                -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1,
-                sin(free_a2),
-            )
+
+        arm_along_q2_front_down = effective_q3_2*sin_swing_q3_front_up
+        arm_across_q2_front = a2 + effective_q3_2*cos_swing_q3_front
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_front_down = (
+            arm_across_q2_front*wrist_y_from_q1 + arm_along_q2_front_down*wrist_x_from_q1_front
+        )
+        direction_y_q2_front_down = (
+            arm_along_q2_front_down*wrist_y_from_q1 - arm_across_q2_front*wrist_x_from_q1_front
+        )
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_front_up = arm_across_q2_front*wrist_y_from_q1 - arm_along_q2_front_down*wrist_x_from_q1_front
+        direction_y_q2_front_up = -arm_across_q2_front*wrist_x_from_q1_front - arm_along_q2_front_down*wrist_y_from_q1
+        found = elsewhere(
+            reach_front > 1e-11*machine_scale,
+            (direction_x_q2_front_down, direction_y_q2_front_down, direction_x_q2_front_up, direction_y_q2_front_up),
+            elsewhere_direction_x_q2_front_down,
+            (ref_a2,),
+        )
+        direction_x_q2_front_down, direction_y_q2_front_down, direction_x_q2_front_up, direction_y_q2_front_up = found
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
@@ -368,7 +349,8 @@ class ArrayPrograms(Programs):
         )
         # A2: its turn
         axis_a2_front_down = nearest_period(
-            offset_a2 + atan2(direction_y_q2_front_down, direction_x_q2_front_down)/DEGREE, near_a2,
+            offset_a2 + degrees(direction_y_q2_front_down, direction_x_q2_front_down),
+            near_a2,
         )
         cos_q3_front_down = a3*cos_swing_q3_front/effective_q3_2 + d4*sin_swing_q3_front_up/effective_q3_2
         sin_q3_front_down = d4*cos_swing_q3_front/effective_q3_2 - a3*sin_swing_q3_front_up/effective_q3_2
@@ -379,80 +361,72 @@ class ArrayPrograms(Programs):
             open_a3,
         )
         # A3: its turn
-        axis_a3_front_down = nearest_period(offset_a3 + atan2(sin_q3_front_down, cos_q3_front_down)/DEGREE, near_a3)
+        axis_a3_front_down = nearest_period(offset_a3 + degrees(sin_q3_front_down, cos_q3_front_down), near_a3)
         # A2: its turn
         axis_a2_front_up = nearest_period(
-            offset_a2 + atan2(direction_y_q2_front_up, direction_x_q2_front_up)/DEGREE, near_a2,
+            offset_a2 + degrees(direction_y_q2_front_up, direction_x_q2_front_up),
+            near_a2,
         )
         cos_q3_front_up = a3*cos_swing_q3_front/effective_q3_2 - d4*sin_swing_q3_front_up/effective_q3_2
         sin_q3_front_up = a3*sin_swing_q3_front_up/effective_q3_2 + d4*cos_swing_q3_front/effective_q3_2
         # A3: its turn
-        axis_a3_front_up = nearest_period(offset_a3 + atan2(sin_q3_front_up, cos_q3_front_up)/DEGREE, near_a3)
+        axis_a3_front_up = nearest_period(offset_a3 + degrees(sin_q3_front_up, cos_q3_front_up), near_a3)
         wrist_x_from_q1_back = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
-        reach_back = root(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
+        reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3_back = (
             (effective_q3_2 + reach_back - a2)*(a2 + effective_q3_2 + reach_back)*(a2 + effective_q3_2 - reach_back)
             *(a2 + reach_back - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
         )
         refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        axis_a1_back = nearest_period(offset_a1 + atan2(sin_q1_back, cos_q1_back)/DEGREE, near_a1)  # A1: its turn
+        axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
         sin_swing_q3_back_up = root(sine_square_q3_back)
         cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
-        if everywhere(reach_back > 1e-11*machine_scale):
-            arm_along_q2_back_down = effective_q3_2*sin_swing_q3_back_up
-            arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
-            direction_y_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
-            direction_y_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
-        else:
+
+        def elsewhere_direction_x_q2_back_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_q2_back_down = effective_q3_2*sin_swing_q3_back_up
-            arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_back_down = select(
-                reach_back > 1e-11*machine_scale,
-                arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back,
-                cos(free_a2),
-            )
-            direction_y_q2_back_down = select(
-                reach_back > 1e-11*machine_scale,
-                arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back,
-                sin(free_a2),
-            )
+            direction_x_q2_back_down = cos(free_a2)
+            direction_y_q2_back_down = sin(free_a2)
             # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_back_up = select(
-                reach_back > 1e-11*machine_scale,
-                arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back,
-                cos(free_a2),
-            )
-            direction_y_q2_back_up = select(
-                reach_back > 1e-11*machine_scale,
-                -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1,
-                sin(free_a2),
-            )
+            direction_x_q2_back_up = direction_x_q2_back_down
+            direction_y_q2_back_up = direction_y_q2_back_down
+            return (direction_x_q2_back_down, direction_y_q2_back_down, direction_x_q2_back_up, direction_y_q2_back_up)
+
+        arm_along_q2_back_down = effective_q3_2*sin_swing_q3_back_up
+        arm_across_q2_back = a2 + effective_q3_2*cos_swing_q3_back
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_back_down = arm_across_q2_back*wrist_y_from_q1 + arm_along_q2_back_down*wrist_x_from_q1_back
+        direction_y_q2_back_down = arm_along_q2_back_down*wrist_y_from_q1 - arm_across_q2_back*wrist_x_from_q1_back
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_back_up = arm_across_q2_back*wrist_y_from_q1 - arm_along_q2_back_down*wrist_x_from_q1_back
+        direction_y_q2_back_up = -arm_across_q2_back*wrist_x_from_q1_back - arm_along_q2_back_down*wrist_y_from_q1
+        found = elsewhere(
+            reach_back > 1e-11*machine_scale,
+            (direction_x_q2_back_down, direction_y_q2_back_down, direction_x_q2_back_up, direction_y_q2_back_up),
+            elsewhere_direction_x_q2_back_down,
+            (ref_a2,),
+        )
+        direction_x_q2_back_down, direction_y_q2_back_down, direction_x_q2_back_up, direction_y_q2_back_up = found
         # A2: its turn
         axis_a2_back_down = nearest_period(
-            offset_a2 + atan2(direction_y_q2_back_down, direction_x_q2_back_down)/DEGREE, near_a2,
+            offset_a2 + degrees(direction_y_q2_back_down, direction_x_q2_back_down),
+            near_a2,
         )
         cos_q3_back_down = a3*cos_swing_q3_back/effective_q3_2 + d4*sin_swing_q3_back_up/effective_q3_2
         sin_q3_back_down = d4*cos_swing_q3_back/effective_q3_2 - a3*sin_swing_q3_back_up/effective_q3_2
         # A3: its turn
-        axis_a3_back_down = nearest_period(offset_a3 + atan2(sin_q3_back_down, cos_q3_back_down)/DEGREE, near_a3)
+        axis_a3_back_down = nearest_period(offset_a3 + degrees(sin_q3_back_down, cos_q3_back_down), near_a3)
         # A2: its turn
-        axis_a2_back_up = nearest_period(
-            offset_a2 + atan2(direction_y_q2_back_up, direction_x_q2_back_up)/DEGREE, near_a2,
-        )
+        axis_a2_back_up = nearest_period(offset_a2 + degrees(direction_y_q2_back_up, direction_x_q2_back_up), near_a2)
         cos_q3_back_up = a3*cos_swing_q3_back/effective_q3_2 - d4*sin_swing_q3_back_up/effective_q3_2
         sin_q3_back_up = a3*sin_swing_q3_back_up/effective_q3_2 + d4*cos_swing_q3_back/effective_q3_2
-        # A3: its turn
-        axis_a3_back_up = nearest_period(offset_a3 + atan2(sin_q3_back_up, cos_q3_back_up)/DEGREE, near_a3)
+        axis_a3_back_up = nearest_period(offset_a3 + degrees(sin_q3_back_up, cos_q3_back_up), near_a3)  # A3: its turn
+        status_front = refused(status, refusal_front)
+        status_back = refused(status, refusal_back)
         return (
-            ((axis_a1_front, axis_a2_front_down, axis_a3_front_down), refused(status, refusal_front)),
-            ((axis_a1_back, axis_a2_back_down, axis_a3_back_down), refused(status, refusal_back)),
-            ((axis_a1_front, axis_a2_front_up, axis_a3_front_up), refused(status, refusal_front)),
-            ((axis_a1_back, axis_a2_back_up, axis_a3_back_up), refused(status, refusal_back)),
+            ((axis_a1_front, axis_a2_front_down, axis_a3_front_down), status_front),
+            ((axis_a1_back, axis_a2_back_down, axis_a3_back_down), status_back),
+            ((axis_a1_front, axis_a2_front_up, axis_a3_front_up), status_front),
+            ((axis_a1_back, axis_a2_back_up, axis_a3_back_up), status_back),
         )

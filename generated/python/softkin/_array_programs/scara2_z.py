@@ -10,20 +10,21 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -93,7 +94,7 @@ class ArrayPrograms(Programs):
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
@@ -103,33 +104,38 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
         sin_a2 = root(sine_square_a2)*sigma_elbow
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
-            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
-        else:
+
+        def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1 = select(reach > 1e-11*machine_scale, arm_across_a1*y + arm_along_a1*x, cos(free_a1))
-            direction_y_a1 = select(reach > 1e-11*machine_scale, arm_along_a1*y - arm_across_a1*x, sin(free_a1))
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
+            return (direction_x_a1, direction_y_a1)
+
+        arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
+        arm_across_a1 = arm_length_2*sin_a2
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1 = arm_across_a1*y + arm_along_a1*x
+        direction_y_a1 = arm_along_a1*y - arm_across_a1*x
+        direction_x_a1, direction_y_a1 = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_a1, direction_y_a1),
+            elsewhere_direction_x_a1,
+            (ref_a1,),
+        )
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(direction_y_a1, direction_x_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(direction_y_a1, direction_x_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         axis_z = offset_z + z
         return (axis_a1, axis_a2, axis_z), status
 
@@ -175,7 +181,7 @@ class ArrayPrograms(Programs):
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
         require(status, (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9), Status.BAD_INPUT)
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
@@ -185,41 +191,31 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
         sin_a2_right = root(sine_square_a2)
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1_right = arm_length_2*sin_a2_right
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
-            direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
-            direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
-        else:
+
+        def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1_right = arm_length_2*sin_a2_right
             # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_right = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a1_right*y + arm_along_a1*x,
-                cos(free_a1),
-            )
-            direction_y_a1_right = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a1*y - arm_across_a1_right*x,
-                sin(free_a1),
-            )
+            direction_x_a1_right = cos(free_a1)
+            direction_y_a1_right = sin(free_a1)
             # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_left = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a1*x - arm_across_a1_right*y,
-                cos(free_a1),
-            )
-            direction_y_a1_left = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a1_right*x + arm_along_a1*y,
-                sin(free_a1),
-            )
+            direction_x_a1_left = direction_x_a1_right
+            direction_y_a1_left = direction_y_a1_right
+            return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
+
+        arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
+        arm_across_a1_right = arm_length_2*sin_a2_right
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
+        direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
+        direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
+        direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
+            elsewhere_direction_x_a1_right,
+            (ref_a1,),
+        )
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -227,19 +223,19 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         # A1: its turn
-        axis_a1_right = nearest_period(offset_a1 + atan2(direction_y_a1_right, direction_x_a1_right)/DEGREE, near_a1)
+        axis_a1_right = nearest_period(offset_a1 + degrees(direction_y_a1_right, direction_x_a1_right), near_a1)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2_right = nearest_period(offset_a2 + atan2(sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2_right = nearest_period(offset_a2 + degrees(sin_a2_right, cos_a2), near_a2)  # A2: its turn
         axis_z = offset_z + z
         # A1: its turn
-        axis_a1_left = nearest_period(offset_a1 + atan2(direction_y_a1_left, direction_x_a1_left)/DEGREE, near_a1)
-        axis_a2_left = nearest_period(offset_a2 + atan2(-sin_a2_right, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a1_left = nearest_period(offset_a1 + degrees(direction_y_a1_left, direction_x_a1_left), near_a1)
+        axis_a2_left = nearest_period(offset_a2 + degrees(-sin_a2_right, cos_a2), near_a2)  # A2: its turn
         return (
-            ((axis_a1_right, axis_a2_right, axis_z), refused(status, 0.0)),
-            ((axis_a1_left, axis_a2_left, axis_z), refused(status, 0.0)),
+            ((axis_a1_right, axis_a2_right, axis_z), status),
+            ((axis_a1_left, axis_a2_left, axis_z), status),
         )

@@ -10,20 +10,21 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -138,7 +139,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
@@ -146,7 +147,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
@@ -156,27 +157,24 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
         sin_a2 = root(sine_square_a2)*sigma_elbow
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
-            direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-        else:
+
+        def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1 = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a1*wrist_y + arm_along_a1*wrist_x,
-                cos(free_a1),
-            )
-            direction_y_a1 = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a1*wrist_y - arm_across_a1*wrist_x,
-                sin(free_a1),
-            )
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
+            return (direction_x_a1, direction_y_a1)
+
+        arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
+        arm_across_a1 = arm_length_2*sin_a2
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
+        direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
+        direction_x_a1, direction_y_a1 = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_a1, direction_y_a1),
+            elsewhere_direction_x_a1,
+            (ref_a1,),
+        )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
@@ -288,7 +286,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
@@ -296,7 +294,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
             (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
@@ -306,41 +304,31 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
         sin_a2_right = root(sine_square_a2)
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1_right = arm_length_2*sin_a2_right
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
-            direction_y_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y
-            direction_y_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
-        else:
+
+        def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1_right = arm_length_2*sin_a2_right
             # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_right = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a1_right*wrist_y + arm_along_a1*wrist_x,
-                cos(free_a1),
-            )
-            direction_y_a1_right = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a1*wrist_y - arm_across_a1_right*wrist_x,
-                sin(free_a1),
-            )
+            direction_x_a1_right = cos(free_a1)
+            direction_y_a1_right = sin(free_a1)
             # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_left = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a1*wrist_x - arm_across_a1_right*wrist_y,
-                cos(free_a1),
-            )
-            direction_y_a1_left = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a1_right*wrist_x + arm_along_a1*wrist_y,
-                sin(free_a1),
-            )
+            direction_x_a1_left = direction_x_a1_right
+            direction_y_a1_left = direction_y_a1_right
+            return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
+
+        arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
+        arm_across_a1_right = arm_length_2*sin_a2_right
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
+        direction_y_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y
+        direction_y_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
+        direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
+            elsewhere_direction_x_a1_right,
+            (ref_a1,),
+        )
         angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
@@ -374,6 +362,6 @@ class ArrayPrograms(Programs):
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_left = nearest_period(offset_a3 + (angle_heading - angle_a1_left - angle_a2_left)/DEGREE, near_a3)
         return (
-            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_z), refused(status, 0.0)),
-            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_z), refused(status, 0.0)),
+            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_z), status),
+            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_z), status),
         )

@@ -10,20 +10,21 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -152,10 +153,10 @@ class ArrayPrograms(Programs):
         # projection: the tool direction swings to the machine's, the twist is kept
         heading_along = r11 + (1.0 - 2.0*flange_down)*r22
         heading_across = r21 - (1.0 - 2.0*flange_down)*r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -165,19 +166,24 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2 = root(sine_square_a2)*sigma_elbow
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1 = arm_across_a1*y + arm_along_a1*x
-            direction_y_a1 = arm_along_a1*y - arm_across_a1*x
-        else:
+
+        def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1 = select(reach > 1e-11*machine_scale, arm_across_a1*y + arm_along_a1*x, cos(free_a1))
-            direction_y_a1 = select(reach > 1e-11*machine_scale, arm_along_a1*y - arm_across_a1*x, sin(free_a1))
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
+            return (direction_x_a1, direction_y_a1)
+
+        arm_along_a1 = link_length_1 + link_length_2*cos_a2
+        arm_across_a1 = link_length_2*sin_a2
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1 = arm_across_a1*y + arm_along_a1*x
+        direction_y_a1 = arm_along_a1*y - arm_across_a1*x
+        direction_x_a1, direction_y_a1 = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_a1, direction_y_a1),
+            elsewhere_direction_x_a1,
+            (ref_a1,),
+        )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
@@ -294,10 +300,10 @@ class ArrayPrograms(Programs):
         # projection: the tool direction swings to the machine's, the twist is kept
         heading_along = r11 + (1.0 - 2.0*flange_down)*r22
         heading_across = r21 - (1.0 - 2.0*flange_down)*r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
-        reach = root(x*x + y*y)
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -307,41 +313,31 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2_right = root(sine_square_a2)
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
-            direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
-            direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
-        else:
+
+        def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
             # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_right = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a1_right*y + arm_along_a1*x,
-                cos(free_a1),
-            )
-            direction_y_a1_right = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a1*y - arm_across_a1_right*x,
-                sin(free_a1),
-            )
+            direction_x_a1_right = cos(free_a1)
+            direction_y_a1_right = sin(free_a1)
             # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_left = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a1*x - arm_across_a1_right*y,
-                cos(free_a1),
-            )
-            direction_y_a1_left = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a1_right*x + arm_along_a1*y,
-                sin(free_a1),
-            )
+            direction_x_a1_left = direction_x_a1_right
+            direction_y_a1_left = direction_y_a1_right
+            return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
+
+        arm_along_a1 = link_length_1 + link_length_2*cos_a2
+        arm_across_a1_right = link_length_2*sin_a2_right
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1_right = arm_across_a1_right*y + arm_along_a1*x
+        direction_y_a1_right = arm_along_a1*y - arm_across_a1_right*x
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1_left = arm_along_a1*x - arm_across_a1_right*y
+        direction_y_a1_left = arm_across_a1_right*x + arm_along_a1*y
+        direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
+            elsewhere_direction_x_a1_right,
+            (ref_a1,),
+        )
         angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
@@ -381,6 +377,6 @@ class ArrayPrograms(Programs):
         a3_left = z + a4_left*pitch_zc/(360.0*DEGREE) - a4_left*gear_coupling/DEGREE  # a3: affine in the z equation
         axis_a3_left = a3_left + offset_a3
         return (
-            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right), refused(status, 0.0)),
-            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_a4_left), refused(status, 0.0)),
+            ((axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right), status),
+            ((axis_a1_left, axis_a2_left, axis_a3_left, axis_a4_left), status),
         )

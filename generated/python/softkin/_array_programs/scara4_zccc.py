@@ -10,20 +10,21 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -138,7 +139,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
@@ -146,7 +147,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -157,27 +158,24 @@ class ArrayPrograms(Programs):
         axis_a1 = offset_a1 + z
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
         sin_a3 = root(sine_square_a3)*sigma_elbow
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2 = link_length_2*sin_a3
-            # a2: linear pair in the x and y equations; its reference where it is free
-            direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
-            direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
-        else:
+
+        def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2 = link_length_2*sin_a3
-            # a2: linear pair in the x and y equations; its reference where it is free
-            direction_x_a2 = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a2*wrist_y + arm_along_a2*wrist_x,
-                cos(free_a2),
-            )
-            direction_y_a2 = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a2*wrist_y - arm_across_a2*wrist_x,
-                sin(free_a2),
-            )
+            direction_x_a2 = cos(free_a2)  # a2: linear pair in the x and y equations; its reference where it is free
+            direction_y_a2 = sin(free_a2)
+            return (direction_x_a2, direction_y_a2)
+
+        arm_along_a2 = link_length_1 + link_length_2*cos_a3
+        arm_across_a2 = link_length_2*sin_a3
+        # a2: linear pair in the x and y equations; its reference where it is free
+        direction_x_a2 = arm_across_a2*wrist_y + arm_along_a2*wrist_x
+        direction_y_a2 = arm_along_a2*wrist_y - arm_across_a2*wrist_x
+        direction_x_a2, direction_y_a2 = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_a2, direction_y_a2),
+            elsewhere_direction_x_a2,
+            (ref_a2,),
+        )
         angle_a2 = atan2(direction_y_a2, direction_x_a2)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
@@ -288,7 +286,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         heading_divisor = select(heading_length > 1e-11, heading_length, 1.0)
@@ -296,7 +294,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -307,41 +305,31 @@ class ArrayPrograms(Programs):
         axis_a1 = offset_a1 + z
         cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
         sin_a3_right = root(sine_square_a3)
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2_right = link_length_2*sin_a3_right
-            # a2: linear pair in the x and y equations; its reference where it is free
-            direction_x_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
-            direction_y_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
-            # a2: linear pair in the x and y equations; its reference where it is free
-            direction_x_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y
-            direction_y_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
-        else:
+
+        def elsewhere_direction_x_a2_right(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2_right = link_length_2*sin_a3_right
             # a2: linear pair in the x and y equations; its reference where it is free
-            direction_x_a2_right = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a2_right*wrist_y + arm_along_a2*wrist_x,
-                cos(free_a2),
-            )
-            direction_y_a2_right = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a2*wrist_y - arm_across_a2_right*wrist_x,
-                sin(free_a2),
-            )
+            direction_x_a2_right = cos(free_a2)
+            direction_y_a2_right = sin(free_a2)
             # a2: linear pair in the x and y equations; its reference where it is free
-            direction_x_a2_left = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a2*wrist_x - arm_across_a2_right*wrist_y,
-                cos(free_a2),
-            )
-            direction_y_a2_left = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a2_right*wrist_x + arm_along_a2*wrist_y,
-                sin(free_a2),
-            )
+            direction_x_a2_left = direction_x_a2_right
+            direction_y_a2_left = direction_y_a2_right
+            return (direction_x_a2_right, direction_y_a2_right, direction_x_a2_left, direction_y_a2_left)
+
+        arm_along_a2 = link_length_1 + link_length_2*cos_a3
+        arm_across_a2_right = link_length_2*sin_a3_right
+        # a2: linear pair in the x and y equations; its reference where it is free
+        direction_x_a2_right = arm_across_a2_right*wrist_y + arm_along_a2*wrist_x
+        direction_y_a2_right = arm_along_a2*wrist_y - arm_across_a2_right*wrist_x
+        # a2: linear pair in the x and y equations; its reference where it is free
+        direction_x_a2_left = arm_along_a2*wrist_x - arm_across_a2_right*wrist_y
+        direction_y_a2_left = arm_across_a2_right*wrist_x + arm_along_a2*wrist_y
+        direction_x_a2_right, direction_y_a2_right, direction_x_a2_left, direction_y_a2_left = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_a2_right, direction_y_a2_right, direction_x_a2_left, direction_y_a2_left),
+            elsewhere_direction_x_a2_right,
+            (ref_a2,),
+        )
         angle_a2_right = atan2(direction_y_a2_right, direction_x_a2_right)
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
@@ -374,6 +362,6 @@ class ArrayPrograms(Programs):
         # a4: what the sum a234 leaves; A4: its turn
         axis_a4_left = nearest_period(offset_a4 + (angle_heading - angle_a2_left - angle_a3_left)/DEGREE, near_a4)
         return (
-            ((axis_a1, axis_a2_right, axis_a3_right, axis_a4_right), refused(status, 0.0)),
-            ((axis_a1, axis_a2_left, axis_a3_left, axis_a4_left), refused(status, 0.0)),
+            ((axis_a1, axis_a2_right, axis_a3_right, axis_a4_right), status),
+            ((axis_a1, axis_a2_left, axis_a3_left, axis_a4_left), status),
         )

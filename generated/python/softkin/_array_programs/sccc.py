@@ -10,20 +10,21 @@ from softkin._array import (
     DEGREE,
     Codes,
     Programs,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
     atan2,
     cos,
-    everywhere,
+    elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -140,7 +141,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none
@@ -150,7 +151,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -160,27 +161,24 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2 = root(sine_square_a2)*sigma_elbow
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
-            direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
-        else:
+
+        def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1 = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a1*wrist_y + arm_along_a1*wrist_x,
-                cos(free_a1),
-            )
-            direction_y_a1 = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a1*wrist_y - arm_across_a1*wrist_x,
-                sin(free_a1),
-            )
+            direction_x_a1 = cos(free_a1)  # a1: linear pair in the x and y equations; its reference where it is free
+            direction_y_a1 = sin(free_a1)
+            return (direction_x_a1, direction_y_a1)
+
+        arm_along_a1 = link_length_1 + link_length_2*cos_a2
+        arm_across_a1 = link_length_2*sin_a2
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1 = arm_across_a1*wrist_y + arm_along_a1*wrist_x
+        direction_y_a1 = arm_along_a1*wrist_y - arm_across_a1*wrist_x
+        direction_x_a1, direction_y_a1 = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_a1, direction_y_a1),
+            elsewhere_direction_x_a1,
+            (ref_a1,),
+        )
         angle_a1 = atan2(direction_y_a1, direction_x_a1)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
@@ -191,39 +189,43 @@ class ArrayPrograms(Programs):
         axis_a1 = nearest_period(offset_a1 + angle_a1/DEGREE, near_a1)  # A1: its turn
         angle_a2 = atan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        if everywhere(absolute(turn_a2) > 0.0):
-            near_a2 = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
-        else:
+
+        def elsewhere_near_a2(motor_a1: Real, ref_a1: Real, ref_a2: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
             # A2: where its turn is open
             open_a2 = select(single_a2 > 0.0, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1/DEGREE)
-            near_a2 = select(
-                absolute(turn_a2) > 0.0,
-                select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-                open_a2,
-            )
+            near_a2 = open_a2
+            return (near_a2,)
+
+        near_a2 = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
+        (near_a2,) = elsewhere(absolute(turn_a2) > 0.0, (near_a2,), elsewhere_near_a2, (motor_a1, ref_a1, ref_a2))
         axis_a2 = nearest_period(offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE, near_a2)  # A2: its turn
         angle_heading = atan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        if everywhere(absolute(turn_a3) > 0.0):
-            near_a3 = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
-        else:
+
+        def elsewhere_near_a3(motor_a1: Real, motor_a2: Real, ref_a1: Real, ref_a2: Real, ref_a3: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
-            free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-            # A3: where its turn is open
-            open_a3 = select(
-                single_a3 > 0.0, mid_a3,
-                offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE,
-            )
-            near_a3 = select(
-                absolute(turn_a3) > 0.0,
-                select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-                open_a3,
-            )
+            open_a3: Real
+            if single_a3 > 0.0:
+                open_a3 = mid_a3  # A3: where its turn is open
+            else:
+                ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
+                free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
+                # A3: where its turn is open
+                open_a3 = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1 - coupling_23*motor_a2)/DEGREE
+            near_a3 = open_a3
+            return (near_a3,)
+
+        near_a3 = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
+        (near_a3,) = elsewhere(
+            absolute(turn_a3) > 0.0,
+            (near_a3,),
+            elsewhere_near_a3,
+            (motor_a1, motor_a2, ref_a1, ref_a2, ref_a3),
+        )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3 = nearest_period(
             (
@@ -336,7 +338,7 @@ class ArrayPrograms(Programs):
         )
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = root(heading_across*heading_across + heading_along*heading_along)
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         # z: a planar machine has none
@@ -346,7 +348,7 @@ class ArrayPrograms(Programs):
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = root(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
             (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
@@ -356,41 +358,31 @@ class ArrayPrograms(Programs):
         require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
         cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
         sin_a2_right = root(sine_square_a2)
-        if everywhere(reach > 1e-11*machine_scale):
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
-            direction_y_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
-            # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y
-            direction_y_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
-        else:
+
+        def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1_right = link_length_2*sin_a2_right
             # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_right = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a1_right*wrist_y + arm_along_a1*wrist_x,
-                cos(free_a1),
-            )
-            direction_y_a1_right = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a1*wrist_y - arm_across_a1_right*wrist_x,
-                sin(free_a1),
-            )
+            direction_x_a1_right = cos(free_a1)
+            direction_y_a1_right = sin(free_a1)
             # a1: linear pair in the x and y equations; its reference where it is free
-            direction_x_a1_left = select(
-                reach > 1e-11*machine_scale,
-                arm_along_a1*wrist_x - arm_across_a1_right*wrist_y,
-                cos(free_a1),
-            )
-            direction_y_a1_left = select(
-                reach > 1e-11*machine_scale,
-                arm_across_a1_right*wrist_x + arm_along_a1*wrist_y,
-                sin(free_a1),
-            )
+            direction_x_a1_left = direction_x_a1_right
+            direction_y_a1_left = direction_y_a1_right
+            return (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left)
+
+        arm_along_a1 = link_length_1 + link_length_2*cos_a2
+        arm_across_a1_right = link_length_2*sin_a2_right
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1_right = arm_across_a1_right*wrist_y + arm_along_a1*wrist_x
+        direction_y_a1_right = arm_along_a1*wrist_y - arm_across_a1_right*wrist_x
+        # a1: linear pair in the x and y equations; its reference where it is free
+        direction_x_a1_left = arm_along_a1*wrist_x - arm_across_a1_right*wrist_y
+        direction_y_a1_left = arm_across_a1_right*wrist_x + arm_along_a1*wrist_y
+        direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left = elsewhere(
+            reach > 1e-11*machine_scale,
+            (direction_x_a1_right, direction_y_a1_right, direction_x_a1_left, direction_y_a1_left),
+            elsewhere_direction_x_a1_right,
+            (ref_a1,),
+        )
         angle_a1_right = atan2(direction_y_a1_right, direction_x_a1_right)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
@@ -404,29 +396,31 @@ class ArrayPrograms(Programs):
         angle_a1_left = atan2(direction_y_a1_left, direction_x_a1_left)
         axis_a1_left = nearest_period(offset_a1 + angle_a1_left/DEGREE, near_a1)  # A1: its turn
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
-        if everywhere(absolute(turn_a2) > 0.0):
-            near_a2_right = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
-            near_a2_left = near_a2_right
-        else:
+
+        def elsewhere_near_a2_right(motor_a1_left: Real, motor_a1_right: Real, ref_a1: Real, ref_a2: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            free_a2 = ref_motor_a2 + coupling_12*free_a1
-            # A2: where its turn is open
-            open_a2_right = select(
-                single_a2 > 0.0, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_right/DEGREE,
-            )
-            near_a2_right = select(
-                absolute(turn_a2) > 0.0,
-                select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-                open_a2_right,
-            )
-            # A2: where its turn is open
-            open_a2_left = select(single_a2 > 0.0, mid_a2, offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_left/DEGREE)
-            near_a2_left = select(
-                absolute(turn_a2) > 0.0,
-                select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
-                open_a2_left,
-            )
+            open_a2_right: Real
+            open_a2_left: Real
+            if single_a2 > 0.0:
+                open_a2_right = mid_a2  # A2: where its turn is open
+                open_a2_left = mid_a2  # A2: where its turn is open
+            else:
+                free_a2 = ref_motor_a2 + coupling_12*free_a1
+                open_a2_right = offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: where its turn is open
+                open_a2_left = offset_a2 + free_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: where its turn is open
+            near_a2_right = open_a2_right
+            near_a2_left = open_a2_left
+            return (near_a2_right, near_a2_left)
+
+        near_a2_right = select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2)
+        near_a2_left = near_a2_right
+        near_a2_right, near_a2_left = elsewhere(
+            absolute(turn_a2) > 0.0,
+            (near_a2_right, near_a2_left),
+            elsewhere_near_a2_right,
+            (motor_a1_left, motor_a1_right, ref_a1, ref_a2),
+        )
         # A2: its turn
         axis_a2_right = nearest_period(
             offset_a2 + angle_a2_right/DEGREE - coupling_12*motor_a1_right/DEGREE, near_a2_right,
@@ -439,34 +433,37 @@ class ArrayPrograms(Programs):
             offset_a2 + angle_a2_left/DEGREE - coupling_12*motor_a1_left/DEGREE, near_a2_left,
         )
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
-        if everywhere(absolute(turn_a3) > 0.0):
-            near_a3_right = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
-            near_a3_left = near_a3_right
-        else:
+
+        def elsewhere_near_a3_right(
+            motor_a1_left: Real, motor_a1_right: Real, motor_a2_left: Real, motor_a2_right: Real, ref_a1: Real,
+            ref_a2: Real, ref_a3: Real,
+        ) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
-            free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
-            # A3: where its turn is open
-            open_a3_right = select(
-                single_a3 > 0.0, mid_a3,
-                offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE,
-            )
-            near_a3_right = select(
-                absolute(turn_a3) > 0.0,
-                select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-                open_a3_right,
-            )
-            # A3: where its turn is open
-            open_a3_left = select(
-                single_a3 > 0.0, mid_a3,
-                offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE,
-            )
-            near_a3_left = select(
-                absolute(turn_a3) > 0.0,
-                select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
-                open_a3_left,
-            )
+            open_a3_right: Real
+            open_a3_left: Real
+            if single_a3 > 0.0:
+                open_a3_right = mid_a3  # A3: where its turn is open
+                open_a3_left = mid_a3  # A3: where its turn is open
+            else:
+                ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
+                free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
+                # A3: where its turn is open
+                open_a3_right = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE
+                # A3: where its turn is open
+                open_a3_left = offset_a3 + free_a3/DEGREE + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE
+            near_a3_right = open_a3_right
+            near_a3_left = open_a3_left
+            return (near_a3_right, near_a3_left)
+
+        near_a3_right = select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3)
+        near_a3_left = near_a3_right
+        near_a3_right, near_a3_left = elsewhere(
+            absolute(turn_a3) > 0.0,
+            (near_a3_right, near_a3_left),
+            elsewhere_near_a3_right,
+            (motor_a1_left, motor_a1_right, motor_a2_left, motor_a2_right, ref_a1, ref_a2, ref_a3),
+        )
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = nearest_period(
             (
@@ -484,6 +481,6 @@ class ArrayPrograms(Programs):
             near_a3_left,
         )
         return (
-            ((axis_a1_right, axis_a2_right, axis_a3_right), refused(status, 0.0)),
-            ((axis_a1_left, axis_a2_left, axis_a3_left), refused(status, 0.0)),
+            ((axis_a1_right, axis_a2_right, axis_a3_right), status),
+            ((axis_a1_left, axis_a2_left, axis_a3_left), status),
         )

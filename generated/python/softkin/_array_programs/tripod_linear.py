@@ -455,13 +455,21 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_above_above = select(type2_rods_coplanar_above_above_above >= min_type2_margin, 0.0, 3.0)
+        status_below_below_below = refused(status, refusal_below_below_below)
+        status_above_below_below = refused(status, refusal_above_below_below)
+        status_below_above_below = refused(status, refusal_below_above_below)
+        status_above_above_below = refused(status, refusal_above_above_below)
+        status_below_below_above = refused(status, refusal_below_below_above)
+        status_above_below_above = refused(status, refusal_above_below_above)
+        status_below_above_above = refused(status, refusal_below_above_above)
+        status_above_above_above = refused(status, refusal_above_above_above)
         return (
-            ((axis_a1_below, axis_a2_below, axis_a3_below), refused(status, refusal_below_below_below)),
-            ((axis_a1_above, axis_a2_below, axis_a3_below), refused(status, refusal_above_below_below)),
-            ((axis_a1_below, axis_a2_above, axis_a3_below), refused(status, refusal_below_above_below)),
-            ((axis_a1_above, axis_a2_above, axis_a3_below), refused(status, refusal_above_above_below)),
-            ((axis_a1_below, axis_a2_below, axis_a3_above), refused(status, refusal_below_below_above)),
-            ((axis_a1_above, axis_a2_below, axis_a3_above), refused(status, refusal_above_below_above)),
-            ((axis_a1_below, axis_a2_above, axis_a3_above), refused(status, refusal_below_above_above)),
-            ((axis_a1_above, axis_a2_above, axis_a3_above), refused(status, refusal_above_above_above)),
+            ((axis_a1_below, axis_a2_below, axis_a3_below), status_below_below_below),
+            ((axis_a1_above, axis_a2_below, axis_a3_below), status_above_below_below),
+            ((axis_a1_below, axis_a2_above, axis_a3_below), status_below_above_below),
+            ((axis_a1_above, axis_a2_above, axis_a3_below), status_above_above_below),
+            ((axis_a1_below, axis_a2_below, axis_a3_above), status_below_below_above),
+            ((axis_a1_above, axis_a2_below, axis_a3_above), status_above_below_above),
+            ((axis_a1_below, axis_a2_above, axis_a3_above), status_below_above_above),
+            ((axis_a1_above, axis_a2_above, axis_a3_above), status_above_above_above),
         )

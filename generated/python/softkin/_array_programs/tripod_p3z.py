@@ -18,6 +18,7 @@ from softkin._array import (
     require,
     root,
     select,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -136,20 +137,20 @@ class ArrayPrograms(Programs):
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        span_1_x = x + rail_x_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
-        span_1_y = y + rail_y_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
+        span_1_x = x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
+        span_1_y = y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
         require(status, root_square_a1 >= -1e-12*arm_length*arm_length, Status.UNREACHABLE)
-        span_2_x = x + rail_x_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
-        span_2_y = y + rail_y_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
+        span_2_x = x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
+        span_2_y = y + rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
         require(status, root_square_a2 >= -1e-12*arm_length*arm_length, Status.UNREACHABLE)
-        span_3_x = x + rail_x_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
-        span_3_y = y + rail_y_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
+        span_3_x = x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
+        span_3_y = y + rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
@@ -228,20 +229,20 @@ class ArrayPrograms(Programs):
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        span_1_x = x + rail_x_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
-        span_1_y = y + rail_y_1*tcp_displacement/root(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
+        span_1_x = x + rail_x_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_x_1  # rod 1
+        span_1_y = y + rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1) - rail_y_1  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = arm_length*arm_length - span_1_x*span_1_x - span_1_y*span_1_y
         # rod 1 cannot reach
         require(status, root_square_a1 >= -1e-12*arm_length*arm_length, Status.UNREACHABLE)
-        span_2_x = x + rail_x_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
-        span_2_y = y + rail_y_2*tcp_displacement/root(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
+        span_2_x = x + rail_x_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_x_2  # rod 2
+        span_2_y = y + rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2) - rail_y_2  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = arm_length*arm_length - span_2_x*span_2_x - span_2_y*span_2_y
         # rod 2 cannot reach
         require(status, root_square_a2 >= -1e-12*arm_length*arm_length, Status.UNREACHABLE)
-        span_3_x = x + rail_x_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
-        span_3_y = y + rail_y_3*tcp_displacement/root(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
+        span_3_x = x + rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3  # rod 3
+        span_3_y = y + rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = arm_length*arm_length - span_3_x*span_3_x - span_3_y*span_3_y
         # rod 3 cannot reach
@@ -350,13 +351,21 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = select(type2_rods_coplanar_below_below_below >= min_type2_margin, 0.0, 3.0)
+        status_above_above_above = refused(status, refusal_above_above_above)
+        status_below_above_above = refused(status, refusal_below_above_above)
+        status_above_below_above = refused(status, refusal_above_below_above)
+        status_below_below_above = refused(status, refusal_below_below_above)
+        status_above_above_below = refused(status, refusal_above_above_below)
+        status_below_above_below = refused(status, refusal_below_above_below)
+        status_above_below_below = refused(status, refusal_above_below_below)
+        status_below_below_below = refused(status, refusal_below_below_below)
         return (
-            ((axis_a1_above, axis_a2_above, axis_a3_above), refused(status, refusal_above_above_above)),
-            ((axis_a1_below, axis_a2_above, axis_a3_above), refused(status, refusal_below_above_above)),
-            ((axis_a1_above, axis_a2_below, axis_a3_above), refused(status, refusal_above_below_above)),
-            ((axis_a1_below, axis_a2_below, axis_a3_above), refused(status, refusal_below_below_above)),
-            ((axis_a1_above, axis_a2_above, axis_a3_below), refused(status, refusal_above_above_below)),
-            ((axis_a1_below, axis_a2_above, axis_a3_below), refused(status, refusal_below_above_below)),
-            ((axis_a1_above, axis_a2_below, axis_a3_below), refused(status, refusal_above_below_below)),
-            ((axis_a1_below, axis_a2_below, axis_a3_below), refused(status, refusal_below_below_below)),
+            ((axis_a1_above, axis_a2_above, axis_a3_above), status_above_above_above),
+            ((axis_a1_below, axis_a2_above, axis_a3_above), status_below_above_above),
+            ((axis_a1_above, axis_a2_below, axis_a3_above), status_above_below_above),
+            ((axis_a1_below, axis_a2_below, axis_a3_above), status_below_below_above),
+            ((axis_a1_above, axis_a2_above, axis_a3_below), status_above_above_below),
+            ((axis_a1_below, axis_a2_above, axis_a3_below), status_below_above_below),
+            ((axis_a1_above, axis_a2_below, axis_a3_below), status_above_below_below),
+            ((axis_a1_below, axis_a2_below, axis_a3_below), status_below_below_below),
         )

@@ -14,8 +14,8 @@ from softkin._array import (
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
+    degrees,
     nearest_period,
     passed,
     refused,
@@ -23,6 +23,7 @@ from softkin._array import (
     root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -238,7 +239,7 @@ class ArrayPrograms(Programs):
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )
         )
-        effective_a1 = root(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*arm_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*arm_length_1, effective_a1, 1.0)
@@ -265,7 +266,7 @@ class ArrayPrograms(Programs):
         )
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
-        effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 5e-10*arm_length_1, effective_a2, 1.0)
@@ -290,7 +291,7 @@ class ArrayPrograms(Programs):
             - 0.5*root(3.0)*arm_1_radius
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
-        effective_a3 = root(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 5e-10*arm_length_1, effective_a3, 1.0)
@@ -423,21 +424,21 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + atan2(sin_a1, cos_a1)/DEGREE, near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + degrees(sin_a1, cos_a1), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + atan2(sin_a2, cos_a2)/DEGREE, near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + degrees(sin_a2, cos_a2), near_a2)  # A2: its turn
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + atan2(sin_a3, cos_a3)/DEGREE, near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + degrees(sin_a3, cos_a3), near_a3)  # A3: its turn
         return (axis_a1, axis_a2, axis_a3), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -503,7 +504,7 @@ class ArrayPrograms(Programs):
                 - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
             )
         )
-        effective_a1 = root(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
+        effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*arm_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*arm_length_1, effective_a1, 1.0)
@@ -530,7 +531,7 @@ class ArrayPrograms(Programs):
         )
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
-        effective_a2 = root(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
+        effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 5e-10*arm_length_1, effective_a2, 1.0)
@@ -555,7 +556,7 @@ class ArrayPrograms(Programs):
             - 0.5*root(3.0)*arm_1_radius
         )
         along_a3 = span_2_x + root(3.0)*span_3_y
-        effective_a3 = root(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
+        effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 5e-10*arm_length_1, effective_a3, 1.0)
@@ -690,24 +691,21 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        # A1: its turn
-        axis_a1_outward = nearest_period(offset_a1 + atan2(sin_a1_outward, cos_a1_outward)/DEGREE, near_a1)
+        axis_a1_outward = nearest_period(offset_a1 + degrees(sin_a1_outward, cos_a1_outward), near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        # A2: its turn
-        axis_a2_outward = nearest_period(offset_a2 + atan2(sin_a2_outward, cos_a2_outward)/DEGREE, near_a2)
+        axis_a2_outward = nearest_period(offset_a2 + degrees(sin_a2_outward, cos_a2_outward), near_a2)  # A2: its turn
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        # A3: its turn
-        axis_a3_outward = nearest_period(offset_a3 + atan2(sin_a3_outward, cos_a3_outward)/DEGREE, near_a3)
+        axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)  # A3: its turn
         cos_a3_inward = across_a2*sin_swing_a3_inward/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
         # rod 3
         pivot_3_x_inward = (
@@ -745,8 +743,7 @@ class ArrayPrograms(Programs):
         refusal_outward_outward_inward = select(
             type2_rods_coplanar_outward_outward_inward >= min_type2_margin, 0.0, 3.0,
         )
-        # A3: its turn
-        axis_a3_inward = nearest_period(offset_a3 + atan2(sin_a3_inward, cos_a3_inward)/DEGREE, near_a3)
+        axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)  # A3: its turn
         cos_a2_inward = across_a2*sin_swing_a2_inward/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         # rod 2
         pivot_2_x_inward = (
@@ -784,8 +781,7 @@ class ArrayPrograms(Programs):
         refusal_outward_inward_outward = select(
             type2_rods_coplanar_outward_inward_outward >= min_type2_margin, 0.0, 3.0,
         )
-        # A2: its turn
-        axis_a2_inward = nearest_period(offset_a2 + atan2(sin_a2_inward, cos_a2_inward)/DEGREE, near_a2)
+        axis_a2_inward = nearest_period(offset_a2 + degrees(sin_a2_inward, cos_a2_inward), near_a2)  # A2: its turn
         type2_rods_coplanar_outward_inward_inward = (
             assembly_sign
             *(
@@ -829,8 +825,7 @@ class ArrayPrograms(Programs):
         refusal_inward_outward_outward = select(
             type2_rods_coplanar_inward_outward_outward >= min_type2_margin, 0.0, 3.0,
         )
-        # A1: its turn
-        axis_a1_inward = nearest_period(offset_a1 + atan2(sin_a1_inward, cos_a1_inward)/DEGREE, near_a1)
+        axis_a1_inward = nearest_period(offset_a1 + degrees(sin_a1_inward, cos_a1_inward), near_a1)  # A1: its turn
         type2_rods_coplanar_inward_outward_inward = (
             assembly_sign
             *(
@@ -868,13 +863,21 @@ class ArrayPrograms(Programs):
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_inward_inward = select(type2_rods_coplanar_inward_inward_inward >= min_type2_margin, 0.0, 3.0)
+        status_outward_outward_outward = refused(status, refusal_outward_outward_outward)
+        status_inward_outward_outward = refused(status, refusal_inward_outward_outward)
+        status_outward_inward_outward = refused(status, refusal_outward_inward_outward)
+        status_inward_inward_outward = refused(status, refusal_inward_inward_outward)
+        status_outward_outward_inward = refused(status, refusal_outward_outward_inward)
+        status_inward_outward_inward = refused(status, refusal_inward_outward_inward)
+        status_outward_inward_inward = refused(status, refusal_outward_inward_inward)
+        status_inward_inward_inward = refused(status, refusal_inward_inward_inward)
         return (
-            ((axis_a1_outward, axis_a2_outward, axis_a3_outward), refused(status, refusal_outward_outward_outward)),
-            ((axis_a1_inward, axis_a2_outward, axis_a3_outward), refused(status, refusal_inward_outward_outward)),
-            ((axis_a1_outward, axis_a2_inward, axis_a3_outward), refused(status, refusal_outward_inward_outward)),
-            ((axis_a1_inward, axis_a2_inward, axis_a3_outward), refused(status, refusal_inward_inward_outward)),
-            ((axis_a1_outward, axis_a2_outward, axis_a3_inward), refused(status, refusal_outward_outward_inward)),
-            ((axis_a1_inward, axis_a2_outward, axis_a3_inward), refused(status, refusal_inward_outward_inward)),
-            ((axis_a1_outward, axis_a2_inward, axis_a3_inward), refused(status, refusal_outward_inward_inward)),
-            ((axis_a1_inward, axis_a2_inward, axis_a3_inward), refused(status, refusal_inward_inward_inward)),
+            ((axis_a1_outward, axis_a2_outward, axis_a3_outward), status_outward_outward_outward),
+            ((axis_a1_inward, axis_a2_outward, axis_a3_outward), status_inward_outward_outward),
+            ((axis_a1_outward, axis_a2_inward, axis_a3_outward), status_outward_inward_outward),
+            ((axis_a1_inward, axis_a2_inward, axis_a3_outward), status_inward_inward_outward),
+            ((axis_a1_outward, axis_a2_outward, axis_a3_inward), status_outward_outward_inward),
+            ((axis_a1_inward, axis_a2_outward, axis_a3_inward), status_inward_outward_inward),
+            ((axis_a1_outward, axis_a2_inward, axis_a3_inward), status_outward_inward_inward),
+            ((axis_a1_inward, axis_a2_inward, axis_a3_inward), status_inward_inward_inward),
         )

@@ -10,20 +10,20 @@ from softkin._array import (
     DEGREE,
     Codes,
     OrientationPrograms,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -121,23 +121,30 @@ class ArrayPrograms(OrientationPrograms):
         )
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        if everywhere(radius_a > 1e-11):
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_a = r13_of_a*sigma_roll
-            direction_y_a = r23_of_a*sigma_roll
-        else:
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+
+        def elsewhere_direction_x_a(ref_a: Real) -> Reals:
             free_a = (ref_a - offset_a)*DEGREE
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_a = select(radius_a > 1e-11, r13_of_a*sigma_roll, cos(free_a))
-            direction_y_a = select(radius_a > 1e-11, r23_of_a*sigma_roll, sin(free_a))
+            direction_x_a = cos(free_a)  # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_y_a = sin(free_a)
+            return (direction_x_a, direction_y_a)
+
+        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_a = r13_of_a*sigma_roll
+        direction_y_a = r23_of_a*sigma_roll
+        direction_x_a, direction_y_a = elsewhere(
+            radius_a > 1e-11,
+            (direction_x_a, direction_y_a),
+            elsewhere_direction_x_a,
+            (ref_a,),
+        )
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        axis_a = nearest_period(offset_a + atan2(direction_y_a, direction_x_a)/DEGREE, near_a)  # A: its turn
+        axis_a = nearest_period(offset_a + degrees(direction_y_a, direction_x_a), near_a)  # A: its turn
         a_radius_of_b = radius_a*sigma_roll
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
-        axis_b = nearest_period(offset_b + atan2(a_radius_of_b, r33)/DEGREE, near_b)  # B: its turn
+        axis_b = nearest_period(offset_b + degrees(a_radius_of_b, r33), near_b)  # B: its turn
         return (axis_a, axis_b), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -257,37 +264,41 @@ class ArrayPrograms(OrientationPrograms):
         )
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
-        radius_a = root(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
-        if everywhere(radius_a > 1e-11):
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_a_positive = r13_of_a
-            direction_y_a_positive = r23_of_a
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_a_negative = -r13_of_a
-            direction_y_a_negative = -r23_of_a
-        else:
+        radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+
+        def elsewhere_direction_x_a_positive(ref_a: Real) -> Reals:
             free_a = (ref_a - offset_a)*DEGREE
             # a: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_a_positive = select(radius_a > 1e-11, r13_of_a, cos(free_a))
-            direction_y_a_positive = select(radius_a > 1e-11, r23_of_a, sin(free_a))
+            direction_x_a_positive = cos(free_a)
+            direction_y_a_positive = sin(free_a)
             # a: polar angle in the r13 and r23 equations; its reference where it is free
-            direction_x_a_negative = select(radius_a > 1e-11, -r13_of_a, cos(free_a))
-            direction_y_a_negative = select(radius_a > 1e-11, -r23_of_a, sin(free_a))
+            direction_x_a_negative = direction_x_a_positive
+            direction_y_a_negative = direction_y_a_positive
+            return (direction_x_a_positive, direction_y_a_positive, direction_x_a_negative, direction_y_a_negative)
+
+        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_a_positive = r13_of_a
+        direction_y_a_positive = r23_of_a
+        # a: polar angle in the r13 and r23 equations; its reference where it is free
+        direction_x_a_negative = -r13_of_a
+        direction_y_a_negative = -r23_of_a
+        direction_x_a_positive, direction_y_a_positive, direction_x_a_negative, direction_y_a_negative = elsewhere(
+            radius_a > 1e-11,
+            (direction_x_a_positive, direction_y_a_positive, direction_x_a_negative, direction_y_a_negative),
+            elsewhere_direction_x_a_positive,
+            (ref_a,),
+        )
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
         # A: its turn
-        axis_a_positive = nearest_period(
-            offset_a + atan2(direction_y_a_positive, direction_x_a_positive)/DEGREE, near_a,
-        )
+        axis_a_positive = nearest_period(offset_a + degrees(direction_y_a_positive, direction_x_a_positive), near_a)
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
-        axis_b_positive = nearest_period(offset_b + atan2(radius_a, r33)/DEGREE, near_b)  # B: its turn
+        axis_b_positive = nearest_period(offset_b + degrees(radius_a, r33), near_b)  # B: its turn
         # A: its turn
-        axis_a_negative = nearest_period(
-            offset_a + atan2(direction_y_a_negative, direction_x_a_negative)/DEGREE, near_a,
-        )
-        axis_b_negative = nearest_period(offset_b + atan2(-radius_a, r33)/DEGREE, near_b)  # B: its turn
+        axis_a_negative = nearest_period(offset_a + degrees(direction_y_a_negative, direction_x_a_negative), near_a)
+        axis_b_negative = nearest_period(offset_b + degrees(-radius_a, r33), near_b)  # B: its turn
         return (
-            ((axis_a_positive, axis_b_positive), refused(status, 0.0)),
-            ((axis_a_negative, axis_b_negative), refused(status, 0.0)),
+            ((axis_a_positive, axis_b_positive), status),
+            ((axis_a_negative, axis_b_negative), status),
         )

@@ -10,20 +10,20 @@ from softkin._array import (
     DEGREE,
     Codes,
     OrientationPrograms,
+    Real,
     Reals,
     Rotation,
     Vector,
     absolute,
-    atan2,
     cos,
-    everywhere,
+    degrees,
+    elsewhere,
     nearest_period,
     passed,
-    refused,
     require,
-    root,
     select,
     sin,
+    sqrt,
 )
 from softkin._types import Status
 
@@ -137,27 +137,34 @@ class ArrayPrograms(OrientationPrograms):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
-        radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
-        if everywhere(radius_c > 1e-11):
-            direction_x_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations; its reference where it is free
-            direction_y_c = -r32*sigma_hand
-        else:
+        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
+
+        def elsewhere_direction_x_c(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
-            # c: polar angle in the r31 and r32 equations; its reference where it is free
-            direction_x_c = select(radius_c > 1e-11, r31*sigma_hand, cos(free_c))
-            direction_y_c = select(radius_c > 1e-11, -r32*sigma_hand, sin(free_c))
+            direction_x_c = cos(free_c)  # c: polar angle in the r31 and r32 equations; its reference where it is free
+            direction_y_c = sin(free_c)
+            return (direction_x_c, direction_y_c)
+
+        direction_x_c = r31*sigma_hand  # c: polar angle in the r31 and r32 equations; its reference where it is free
+        direction_y_c = -r32*sigma_hand
+        direction_x_c, direction_y_c = elsewhere(
+            radius_c > 1e-11,
+            (direction_x_c, direction_y_c),
+            elsewhere_direction_x_c,
+            (ref_c,),
+        )
         r22_before_c = direction_x_c*r22 + direction_y_c*r21
         sin_a = -direction_x_c*r12 - direction_y_c*r11
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        axis_a = nearest_period(offset_a + atan2(sin_a, r22_before_c)/DEGREE, near_a)  # A: its turn
+        axis_a = nearest_period(offset_a + degrees(sin_a, r22_before_c), near_a)  # A: its turn
         c_radius_of_b = radius_c*sigma_hand
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
-        axis_b = nearest_period(offset_b + atan2(c_radius_of_b, r33)/DEGREE, near_b)  # B: its turn
+        axis_b = nearest_period(offset_b + degrees(c_radius_of_b, r33), near_b)  # B: its turn
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
-        axis_c = nearest_period(offset_c + atan2(direction_y_c, direction_x_c)/DEGREE, near_c)  # C: its turn
+        axis_c = nearest_period(offset_c + degrees(direction_y_c, direction_x_c), near_c)  # C: its turn
         return (axis_a, axis_b, axis_c), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -273,38 +280,46 @@ class ArrayPrograms(OrientationPrograms):
             status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
-        radius_c = root(r31*r31 + r32*r32)  # c: direction and distance of a point
-        if everywhere(radius_c > 1e-11):
-            direction_x_c_down = r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
-            direction_y_c_down = -r32
-            direction_x_c_up = -r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
-            direction_y_c_up = -direction_y_c_down
-        else:
+        radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
+
+        def elsewhere_direction_x_c_down(ref_c: Real) -> Reals:
             free_c = (ref_c - offset_c)*DEGREE
             # c: polar angle in the r31 and r32 equations; its reference where it is free
-            direction_x_c_down = select(radius_c > 1e-11, r31, cos(free_c))
-            direction_y_c_down = select(radius_c > 1e-11, -r32, sin(free_c))
+            direction_x_c_down = cos(free_c)
+            direction_y_c_down = sin(free_c)
             # c: polar angle in the r31 and r32 equations; its reference where it is free
-            direction_x_c_up = select(radius_c > 1e-11, -r31, cos(free_c))
-            direction_y_c_up = select(radius_c > 1e-11, r32, sin(free_c))
+            direction_x_c_up = direction_x_c_down
+            direction_y_c_up = direction_y_c_down
+            return (direction_x_c_down, direction_y_c_down, direction_x_c_up, direction_y_c_up)
+
+        direction_x_c_down = r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
+        direction_y_c_down = -r32
+        direction_x_c_up = -r31  # c: polar angle in the r31 and r32 equations; its reference where it is free
+        direction_y_c_up = -direction_y_c_down
+        direction_x_c_down, direction_y_c_down, direction_x_c_up, direction_y_c_up = elsewhere(
+            radius_c > 1e-11,
+            (direction_x_c_down, direction_y_c_down, direction_x_c_up, direction_y_c_up),
+            elsewhere_direction_x_c_down,
+            (ref_c,),
+        )
         r22_before_c_down = direction_x_c_down*r22 + direction_y_c_down*r21
         sin_a_down = -direction_x_c_down*r12 - direction_y_c_down*r11
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        axis_a_down = nearest_period(offset_a + atan2(sin_a_down, r22_before_c_down)/DEGREE, near_a)  # A: its turn
+        axis_a_down = nearest_period(offset_a + degrees(sin_a_down, r22_before_c_down), near_a)  # A: its turn
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
-        axis_b_down = nearest_period(offset_b + atan2(radius_c, r33)/DEGREE, near_b)  # B: its turn
+        axis_b_down = nearest_period(offset_b + degrees(radius_c, r33), near_b)  # B: its turn
         open_c = select(single_c > 0.0, mid_c, ref_c)  # C: where its turn is open
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
         # C: its turn
-        axis_c_down = nearest_period(offset_c + atan2(direction_y_c_down, direction_x_c_down)/DEGREE, near_c)
+        axis_c_down = nearest_period(offset_c + degrees(direction_y_c_down, direction_x_c_down), near_c)
         r22_before_c_up = direction_x_c_up*r22 + direction_y_c_up*r21
         sin_a_up = -direction_x_c_up*r12 - direction_y_c_up*r11
-        axis_a_up = nearest_period(offset_a + atan2(sin_a_up, r22_before_c_up)/DEGREE, near_a)  # A: its turn
-        axis_b_up = nearest_period(offset_b + atan2(-radius_c, r33)/DEGREE, near_b)  # B: its turn
-        axis_c_up = nearest_period(offset_c + atan2(direction_y_c_up, direction_x_c_up)/DEGREE, near_c)  # C: its turn
+        axis_a_up = nearest_period(offset_a + degrees(sin_a_up, r22_before_c_up), near_a)  # A: its turn
+        axis_b_up = nearest_period(offset_b + degrees(-radius_c, r33), near_b)  # B: its turn
+        axis_c_up = nearest_period(offset_c + degrees(direction_y_c_up, direction_x_c_up), near_c)  # C: its turn
         return (
-            ((axis_a_down, axis_b_down, axis_c_down), refused(status, 0.0)),
-            ((axis_a_up, axis_b_up, axis_c_up), refused(status, 0.0)),
+            ((axis_a_down, axis_b_down, axis_c_down), status),
+            ((axis_a_up, axis_b_up, axis_c_up), status),
         )

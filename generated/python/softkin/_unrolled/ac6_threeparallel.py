@@ -57,9 +57,10 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_squared_plus_a3_squared = a2*a2 + a3*a3
     size_q6_of_q3_times_rounding = 1e-12*size_q6_of_q3
-    a2_plus_a3 = a2 + a3
-    a2_minus_a3 = a2 - a3
+    a2_minus_a3_squared = (a2 - a3)*(a2 - a3)
+    a2_plus_a3_squared = (a2 + a3)*(a2 + a3)
     scale_q3_squared = scale_q3*scale_q3
+    constant_part = 9.999999999999999e-23*machine_scale*machine_scale
     offset_a5_times_2 = 2.0*offset_a5
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -95,24 +96,23 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(3.0,)
+        # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
             cos_swing_q1 = -d4/divisor_q1
             cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
-            # its reference where it is free
             cos_q1_left = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
             sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
             cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
             sin_q1_left = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
-            # its reference where it is free
             cos_q1_right = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
             sin_q1_right = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_left = cos(free_a1)  # its reference where it is free
+            cos_q1_left = cos(free_a1)
             sin_q1_left = sin(free_a1)
-            cos_q1_right = cos_q1_left  # its reference where it is free
+            cos_q1_right = cos_q1_left
             sin_q1_right = sin_q1_left
         cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_left + wrist_y*sin_q1_left
         r21_from_q1 = r21*cos_q1_left - r11*sin_q1_left
@@ -120,23 +120,25 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         r33_times_radius_q6 = r33*radius_q6
         cos_q5 = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
+        # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6  # its reference where it is free
+            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
-            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down  # its reference where it is free
+            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)  # its reference where it is free
+            cos_q6_before_q6_of_q3_down = cos(free_a6)
             sin_q6_before_q6_of_q3_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down  # its reference where it is free
+            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         wrist_z = z - d6*r33
+        # moved to where the rest can be reached
         if radius_q6 > 0.01:
-            cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-            sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-            cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-            sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+            cos_q6_down = cos_q6_before_q6_of_q3_down
+            sin_q6_down = sin_q6_before_q6_of_q3_down
+            cos_q6_up = cos_q6_before_q6_of_q3_up
+            sin_q6_up = sin_q6_before_q6_of_q3_up
         else:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
@@ -160,9 +162,10 @@ def unrolled(k: Constants) -> Unrolled:
                 wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
                 - a2_squared_plus_a3_squared
             )
+            # moved to where the rest can be reached
             if abs(value_q6_of_q3_down) <= size_q6_of_q3:
-                cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-                sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                cos_q6_down = cos_q6_before_q6_of_q3_down
+                sin_q6_down = sin_q6_before_q6_of_q3_down
             else:
                 along_q6_of_q3_down = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
@@ -175,12 +178,12 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3_down = sqrt(
                     across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
                 )
+                # the arc: cosines from its centre
                 if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
                     level_q6_of_q3_down = (
                         value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
                         - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
                     )
-                    # the arc: cosines from its centre
                     highest_q6_of_q3_down = (
                         1.0
                         if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
@@ -200,7 +203,7 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                     )
                 else:
-                    highest_q6_of_q3_down = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_down = 1.0
                     lowest_q6_of_q3_down = -1.0
                 near_q6_of_q3_down = arctan2(
                     root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)) + 0.0, highest_q6_of_q3_down + 0.0,
@@ -234,12 +237,13 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                # moved to where the rest can be reached
                 if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-                    sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                    cos_q6_down = cos_q6_before_q6_of_q3_down
+                    sin_q6_down = sin_q6_before_q6_of_q3_down
                 else:
-                    cos_q6_down = cos_q6_after_q6_of_q3_down  # moved to where the rest can be reached
-                    sin_q6_down = sin_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+                    cos_q6_down = cos_q6_after_q6_of_q3_down
+                    sin_q6_down = sin_q6_after_q6_of_q3_down
             wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
             wrist_x_from_q1_here_up = (
                 wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
@@ -254,9 +258,10 @@ def unrolled(k: Constants) -> Unrolled:
                 wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
                 - a2_squared_plus_a3_squared
             )
+            # moved to where the rest can be reached
             if abs(value_q6_of_q3_up) <= size_q6_of_q3:
-                cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-                sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                cos_q6_up = cos_q6_before_q6_of_q3_up
+                sin_q6_up = sin_q6_before_q6_of_q3_up
             else:
                 along_q6_of_q3_up = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
@@ -267,12 +272,12 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
                 )
                 swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
+                # the arc: cosines from its centre
                 if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
                     level_q6_of_q3_up = (
                         value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
                         - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
                     )
-                    # the arc: cosines from its centre
                     highest_q6_of_q3_up = (
                         1.0
                         if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
@@ -292,7 +297,7 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                     )
                 else:
-                    highest_q6_of_q3_up = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_up = 1.0
                     lowest_q6_of_q3_up = -1.0
                 near_q6_of_q3_up = arctan2(
                     root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)) + 0.0, highest_q6_of_q3_up + 0.0,
@@ -325,12 +330,13 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                # moved to where the rest can be reached
                 if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-                    sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                    cos_q6_up = cos_q6_before_q6_of_q3_up
+                    sin_q6_up = sin_q6_before_q6_of_q3_up
                 else:
-                    cos_q6_up = cos_q6_after_q6_of_q3_up  # moved to where the rest can be reached
-                    sin_q6_up = sin_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+                    cos_q6_up = cos_q6_after_q6_of_q3_up
+                    sin_q6_up = sin_q6_after_q6_of_q3_up
         r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
         # what the unknown links must span
@@ -338,14 +344,14 @@ def unrolled(k: Constants) -> Unrolled:
         d1_minus_wrist_z = d1 - wrist_z
         r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_down = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+            (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
         )
         sin_q3 = (sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
@@ -389,14 +395,14 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_up = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+            (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
         )
         sin_q3 = (sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
@@ -446,8 +452,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_left_down_up - open_a4 < 179.999999999:
             axis_a4_left_down_up = nearest_period(axis_a4_left_down_up, open_a4)
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1:
+            # limits of A2, limits of A3, limits of A4
             if sine_square_q3_down >= -1e-12 and axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6:
-                # limits of A2, limits of A3, limits of A4
                 refusal_left_up_down = (
                     0.0
                     if (axis_a2_left_up_down >= lowest_a2) and (axis_a3_left_up_down >= lowest_a3) and (axis_a4_left_up_down >= lowest_a4) and (
@@ -455,7 +461,6 @@ def unrolled(k: Constants) -> Unrolled:
                     ) and (axis_a3_left_up_down <= highest_a3) and (axis_a4_left_up_down <= highest_a4)
                     else 3.0
                 )
-                # limits of A2, limits of A3, limits of A4
                 refusal_left_down_down = (
                     0.0
                     if (axis_a2_left_down_down >= lowest_a2) and (axis_a3_left_down_down >= lowest_a3) and (axis_a4_left_down_down >= lowest_a4) and (
@@ -464,10 +469,10 @@ def unrolled(k: Constants) -> Unrolled:
                     else 3.0
                 )
             else:
-                refusal_left_up_down = 3.0  # limits of A2, limits of A3, limits of A4
-                refusal_left_down_down = 3.0  # limits of A2, limits of A3, limits of A4
+                refusal_left_up_down = 3.0
+                refusal_left_down_down = 3.0
+            # limits of A2, limits of A3, limits of A4
             if sine_square_q3_up >= -1e-12 and axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6:
-                # limits of A2, limits of A3, limits of A4
                 refusal_left_up_up = (
                     0.0
                     if (axis_a2_left_up_up >= lowest_a2) and (axis_a3_left_up_up >= lowest_a3) and (axis_a4_left_up_up >= lowest_a4) and (
@@ -475,7 +480,6 @@ def unrolled(k: Constants) -> Unrolled:
                     ) and (axis_a3_left_up_up <= highest_a3) and (axis_a4_left_up_up <= highest_a4)
                     else 3.0
                 )
-                # limits of A2, limits of A3, limits of A4
                 refusal_left_down_up = (
                     0.0
                     if (axis_a2_left_down_up >= lowest_a2) and (axis_a3_left_down_up >= lowest_a3) and (axis_a4_left_down_up >= lowest_a4) and (
@@ -484,35 +488,37 @@ def unrolled(k: Constants) -> Unrolled:
                     else 3.0
                 )
             else:
-                refusal_left_up_up = 3.0  # limits of A2, limits of A3, limits of A4
-                refusal_left_down_up = 3.0  # limits of A2, limits of A3, limits of A4
+                refusal_left_up_up = 3.0
+                refusal_left_down_up = 3.0
         else:
-            refusal_left_up_down = 3.0  # limits of A2, limits of A3, limits of A4
-            refusal_left_up_up = 3.0  # limits of A2, limits of A3, limits of A4
-            refusal_left_down_down = 3.0  # limits of A2, limits of A3, limits of A4
-            refusal_left_down_up = 3.0  # limits of A2, limits of A3, limits of A4
+            refusal_left_up_down = 3.0
+            refusal_left_up_up = 3.0
+            refusal_left_down_down = 3.0
+            refusal_left_down_up = 3.0
         cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_right + wrist_y*sin_q1_right
         r21_from_q1 = r21*cos_q1_right - r11*sin_q1_right
         r22_from_q1 = r22*cos_q1_right - r12*sin_q1_right
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         r33_times_radius_q6 = r33*radius_q6
         cos_q5 = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
+        # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6  # its reference where it is free
+            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
-            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down  # its reference where it is free
+            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)  # its reference where it is free
+            cos_q6_before_q6_of_q3_down = cos(free_a6)
             sin_q6_before_q6_of_q3_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down  # its reference where it is free
+            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+        # moved to where the rest can be reached
         if radius_q6 > 0.01:
-            cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-            sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-            cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-            sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+            cos_q6_down = cos_q6_before_q6_of_q3_down
+            sin_q6_down = sin_q6_before_q6_of_q3_down
+            cos_q6_up = cos_q6_before_q6_of_q3_up
+            sin_q6_up = sin_q6_before_q6_of_q3_up
         else:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
@@ -536,9 +542,10 @@ def unrolled(k: Constants) -> Unrolled:
                 wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
                 - a2_squared_plus_a3_squared
             )
+            # moved to where the rest can be reached
             if abs(value_q6_of_q3_down) <= size_q6_of_q3:
-                cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-                sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                cos_q6_down = cos_q6_before_q6_of_q3_down
+                sin_q6_down = sin_q6_before_q6_of_q3_down
             else:
                 along_q6_of_q3_down = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
@@ -551,12 +558,12 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3_down = sqrt(
                     across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
                 )
+                # the arc: cosines from its centre
                 if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
                     level_q6_of_q3_down = (
                         value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
                         - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
                     )
-                    # the arc: cosines from its centre
                     highest_q6_of_q3_down = (
                         1.0
                         if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
@@ -576,7 +583,7 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                     )
                 else:
-                    highest_q6_of_q3_down = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_down = 1.0
                     lowest_q6_of_q3_down = -1.0
                 near_q6_of_q3_down = arctan2(
                     root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)) + 0.0, highest_q6_of_q3_down + 0.0,
@@ -610,12 +617,13 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                # moved to where the rest can be reached
                 if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-                    sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                    cos_q6_down = cos_q6_before_q6_of_q3_down
+                    sin_q6_down = sin_q6_before_q6_of_q3_down
                 else:
-                    cos_q6_down = cos_q6_after_q6_of_q3_down  # moved to where the rest can be reached
-                    sin_q6_down = sin_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+                    cos_q6_down = cos_q6_after_q6_of_q3_down
+                    sin_q6_down = sin_q6_after_q6_of_q3_down
             wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
             wrist_x_from_q1_here_up = (
                 wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
@@ -630,9 +638,10 @@ def unrolled(k: Constants) -> Unrolled:
                 wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
                 - a2_squared_plus_a3_squared
             )
+            # moved to where the rest can be reached
             if abs(value_q6_of_q3_up) <= size_q6_of_q3:
-                cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-                sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                cos_q6_up = cos_q6_before_q6_of_q3_up
+                sin_q6_up = sin_q6_before_q6_of_q3_up
             else:
                 along_q6_of_q3_up = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
@@ -643,12 +652,12 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
                 )
                 swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
+                # the arc: cosines from its centre
                 if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
                     level_q6_of_q3_up = (
                         value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
                         - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
                     )
-                    # the arc: cosines from its centre
                     highest_q6_of_q3_up = (
                         1.0
                         if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
@@ -668,7 +677,7 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                     )
                 else:
-                    highest_q6_of_q3_up = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_up = 1.0
                     lowest_q6_of_q3_up = -1.0
                 near_q6_of_q3_up = arctan2(
                     root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)) + 0.0, highest_q6_of_q3_up + 0.0,
@@ -701,26 +710,27 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                # moved to where the rest can be reached
                 if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-                    sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                    cos_q6_up = cos_q6_before_q6_of_q3_up
+                    sin_q6_up = sin_q6_before_q6_of_q3_up
                 else:
-                    cos_q6_up = cos_q6_after_q6_of_q3_up  # moved to where the rest can be reached
-                    sin_q6_up = sin_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+                    cos_q6_up = cos_q6_after_q6_of_q3_up
+                    sin_q6_up = sin_q6_after_q6_of_q3_up
         r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
         # what the unknown links must span
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_down = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+            (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
         )
         sin_q3 = (sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
@@ -758,14 +768,14 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_up = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+            (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
         )
         sin_q3 = (sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
@@ -815,8 +825,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_right_down_up - open_a4 < 179.999999999:
             axis_a4_right_down_up = nearest_period(axis_a4_right_down_up, open_a4)
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
+            # limits of A2, limits of A3, limits of A4
             if sine_square_q3_down >= -1e-12 and axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6:
-                # limits of A2, limits of A3, limits of A4
                 refusal_right_up_down = (
                     0.0
                     if (axis_a2_right_up_down >= lowest_a2) and (axis_a3_right_up_down >= lowest_a3) and (axis_a4_right_up_down >= lowest_a4) and (
@@ -824,7 +834,6 @@ def unrolled(k: Constants) -> Unrolled:
                     ) and (axis_a3_right_up_down <= highest_a3) and (axis_a4_right_up_down <= highest_a4)
                     else 3.0
                 )
-                # limits of A2, limits of A3, limits of A4
                 refusal_right_down_down = (
                     0.0
                     if (axis_a2_right_down_down >= lowest_a2) and (axis_a3_right_down_down >= lowest_a3) and (axis_a4_right_down_down >= lowest_a4) and (
@@ -833,10 +842,10 @@ def unrolled(k: Constants) -> Unrolled:
                     else 3.0
                 )
             else:
-                refusal_right_up_down = 3.0  # limits of A2, limits of A3, limits of A4
-                refusal_right_down_down = 3.0  # limits of A2, limits of A3, limits of A4
+                refusal_right_up_down = 3.0
+                refusal_right_down_down = 3.0
+            # limits of A2, limits of A3, limits of A4
             if sine_square_q3_up >= -1e-12 and axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6:
-                # limits of A2, limits of A3, limits of A4
                 refusal_right_up_up = (
                     0.0
                     if (axis_a2_right_up_up >= lowest_a2) and (axis_a3_right_up_up >= lowest_a3) and (axis_a4_right_up_up >= lowest_a4) and (
@@ -844,7 +853,6 @@ def unrolled(k: Constants) -> Unrolled:
                     ) and (axis_a3_right_up_up <= highest_a3) and (axis_a4_right_up_up <= highest_a4)
                     else 3.0
                 )
-                # limits of A2, limits of A3, limits of A4
                 refusal_right_down_up = (
                     0.0
                     if (axis_a2_right_down_up >= lowest_a2) and (axis_a3_right_down_up >= lowest_a3) and (axis_a4_right_down_up >= lowest_a4) and (
@@ -853,13 +861,13 @@ def unrolled(k: Constants) -> Unrolled:
                     else 3.0
                 )
             else:
-                refusal_right_up_up = 3.0  # limits of A2, limits of A3, limits of A4
-                refusal_right_down_up = 3.0  # limits of A2, limits of A3, limits of A4
+                refusal_right_up_up = 3.0
+                refusal_right_down_up = 3.0
         else:
-            refusal_right_up_down = 3.0  # limits of A2, limits of A3, limits of A4
-            refusal_right_up_up = 3.0  # limits of A2, limits of A3, limits of A4
-            refusal_right_down_down = 3.0  # limits of A2, limits of A3, limits of A4
-            refusal_right_down_up = 3.0  # limits of A2, limits of A3, limits of A4
+            refusal_right_up_down = 3.0
+            refusal_right_up_up = 3.0
+            refusal_right_down_down = 3.0
+            refusal_right_down_up = 3.0
         return (
             (
                 (
@@ -940,24 +948,23 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(None,)
+        # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
             cos_swing_q1 = -d4/divisor_q1
             cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
-            # its reference where it is free
             cos_q1_left = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
             sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
             cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
             sin_q1_left = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
-            # its reference where it is free
             cos_q1_right = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
             sin_q1_right = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_left = cos(free_a1)  # its reference where it is free
+            cos_q1_left = cos(free_a1)
             sin_q1_left = sin(free_a1)
-            cos_q1_right = cos_q1_left  # its reference where it is free
+            cos_q1_right = cos_q1_left
             sin_q1_right = sin_q1_left
         cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_left + wrist_y*sin_q1_left
         r21_from_q1 = r21*cos_q1_left - r11*sin_q1_left
@@ -965,23 +972,25 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         r33_times_radius_q6 = r33*radius_q6
         cos_q5 = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
+        # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6  # its reference where it is free
+            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
-            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down  # its reference where it is free
+            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)  # its reference where it is free
+            cos_q6_before_q6_of_q3_down = cos(free_a6)
             sin_q6_before_q6_of_q3_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down  # its reference where it is free
+            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         wrist_z = z - d6*r33
+        # moved to where the rest can be reached
         if radius_q6 > 0.01:
-            cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-            sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-            cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-            sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+            cos_q6_down = cos_q6_before_q6_of_q3_down
+            sin_q6_down = sin_q6_before_q6_of_q3_down
+            cos_q6_up = cos_q6_before_q6_of_q3_up
+            sin_q6_up = sin_q6_before_q6_of_q3_up
         else:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
@@ -1005,9 +1014,10 @@ def unrolled(k: Constants) -> Unrolled:
                 wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
                 - a2_squared_plus_a3_squared
             )
+            # moved to where the rest can be reached
             if abs(value_q6_of_q3_down) <= size_q6_of_q3:
-                cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-                sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                cos_q6_down = cos_q6_before_q6_of_q3_down
+                sin_q6_down = sin_q6_before_q6_of_q3_down
             else:
                 along_q6_of_q3_down = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
@@ -1020,12 +1030,12 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3_down = sqrt(
                     across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
                 )
+                # the arc: cosines from its centre
                 if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
                     level_q6_of_q3_down = (
                         value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
                         - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
                     )
-                    # the arc: cosines from its centre
                     highest_q6_of_q3_down = (
                         1.0
                         if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
@@ -1045,7 +1055,7 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                     )
                 else:
-                    highest_q6_of_q3_down = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_down = 1.0
                     lowest_q6_of_q3_down = -1.0
                 near_q6_of_q3_down = arctan2(
                     root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)),
@@ -1081,12 +1091,13 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                # moved to where the rest can be reached
                 if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-                    sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                    cos_q6_down = cos_q6_before_q6_of_q3_down
+                    sin_q6_down = sin_q6_before_q6_of_q3_down
                 else:
-                    cos_q6_down = cos_q6_after_q6_of_q3_down  # moved to where the rest can be reached
-                    sin_q6_down = sin_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+                    cos_q6_down = cos_q6_after_q6_of_q3_down
+                    sin_q6_down = sin_q6_after_q6_of_q3_down
             wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
             wrist_x_from_q1_here_up = (
                 wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
@@ -1101,9 +1112,10 @@ def unrolled(k: Constants) -> Unrolled:
                 wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
                 - a2_squared_plus_a3_squared
             )
+            # moved to where the rest can be reached
             if abs(value_q6_of_q3_up) <= size_q6_of_q3:
-                cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-                sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                cos_q6_up = cos_q6_before_q6_of_q3_up
+                sin_q6_up = sin_q6_before_q6_of_q3_up
             else:
                 along_q6_of_q3_up = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
@@ -1114,12 +1126,12 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
                 )
                 swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
+                # the arc: cosines from its centre
                 if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
                     level_q6_of_q3_up = (
                         value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
                         - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
                     )
-                    # the arc: cosines from its centre
                     highest_q6_of_q3_up = (
                         1.0
                         if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
@@ -1139,7 +1151,7 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                     )
                 else:
-                    highest_q6_of_q3_up = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_up = 1.0
                     lowest_q6_of_q3_up = -1.0
                 near_q6_of_q3_up = arctan2(root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)), highest_q6_of_q3_up)
                 far_q6_of_q3_up = arctan2(root((1.0 - lowest_q6_of_q3_up)*(1.0 + lowest_q6_of_q3_up)), lowest_q6_of_q3_up)
@@ -1168,12 +1180,13 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                # moved to where the rest can be reached
                 if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-                    sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                    cos_q6_up = cos_q6_before_q6_of_q3_up
+                    sin_q6_up = sin_q6_before_q6_of_q3_up
                 else:
-                    cos_q6_up = cos_q6_after_q6_of_q3_up  # moved to where the rest can be reached
-                    sin_q6_up = sin_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+                    cos_q6_up = cos_q6_after_q6_of_q3_up
+                    sin_q6_up = sin_q6_after_q6_of_q3_up
         r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
         # what the unknown links must span
@@ -1181,16 +1194,14 @@ def unrolled(k: Constants) -> Unrolled:
         d1_minus_wrist_z = d1 - wrist_z
         r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
+        sine_square_q3 = (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
         refusal_left_down = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left)*RADIAN  # A1: its turn
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
@@ -1216,15 +1227,13 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
+        sine_square_q3 = (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
         refusal_left_up = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
@@ -1258,22 +1267,24 @@ def unrolled(k: Constants) -> Unrolled:
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         r33_times_radius_q6 = r33*radius_q6
         cos_q5 = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
+        # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6  # its reference where it is free
+            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
-            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down  # its reference where it is free
+            cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3_down = cos(free_a6)  # its reference where it is free
+            cos_q6_before_q6_of_q3_down = cos(free_a6)
             sin_q6_before_q6_of_q3_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down  # its reference where it is free
+            cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+        # moved to where the rest can be reached
         if radius_q6 > 0.01:
-            cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-            sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-            cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-            sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+            cos_q6_down = cos_q6_before_q6_of_q3_down
+            sin_q6_down = sin_q6_before_q6_of_q3_down
+            cos_q6_up = cos_q6_before_q6_of_q3_up
+            sin_q6_up = sin_q6_before_q6_of_q3_up
         else:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
@@ -1297,9 +1308,10 @@ def unrolled(k: Constants) -> Unrolled:
                 wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
                 - a2_squared_plus_a3_squared
             )
+            # moved to where the rest can be reached
             if abs(value_q6_of_q3_down) <= size_q6_of_q3:
-                cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-                sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                cos_q6_down = cos_q6_before_q6_of_q3_down
+                sin_q6_down = sin_q6_before_q6_of_q3_down
             else:
                 along_q6_of_q3_down = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
@@ -1312,12 +1324,12 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3_down = sqrt(
                     across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
                 )
+                # the arc: cosines from its centre
                 if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
                     level_q6_of_q3_down = (
                         value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
                         - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
                     )
-                    # the arc: cosines from its centre
                     highest_q6_of_q3_down = (
                         1.0
                         if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
@@ -1337,7 +1349,7 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                     )
                 else:
-                    highest_q6_of_q3_down = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_down = 1.0
                     lowest_q6_of_q3_down = -1.0
                 near_q6_of_q3_down = arctan2(
                     root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)),
@@ -1373,12 +1385,13 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                # moved to where the rest can be reached
                 if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_down = cos_q6_before_q6_of_q3_down  # moved to where the rest can be reached
-                    sin_q6_down = sin_q6_before_q6_of_q3_down  # moved to where the rest can be reached
+                    cos_q6_down = cos_q6_before_q6_of_q3_down
+                    sin_q6_down = sin_q6_before_q6_of_q3_down
                 else:
-                    cos_q6_down = cos_q6_after_q6_of_q3_down  # moved to where the rest can be reached
-                    sin_q6_down = sin_q6_after_q6_of_q3_down  # moved to where the rest can be reached
+                    cos_q6_down = cos_q6_after_q6_of_q3_down
+                    sin_q6_down = sin_q6_after_q6_of_q3_down
             wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
             wrist_x_from_q1_here_up = (
                 wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
@@ -1393,9 +1406,10 @@ def unrolled(k: Constants) -> Unrolled:
                 wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
                 - a2_squared_plus_a3_squared
             )
+            # moved to where the rest can be reached
             if abs(value_q6_of_q3_up) <= size_q6_of_q3:
-                cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-                sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                cos_q6_up = cos_q6_before_q6_of_q3_up
+                sin_q6_up = sin_q6_before_q6_of_q3_up
             else:
                 along_q6_of_q3_up = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
@@ -1406,12 +1420,12 @@ def unrolled(k: Constants) -> Unrolled:
                     + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
                 )
                 swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
+                # the arc: cosines from its centre
                 if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
                     level_q6_of_q3_up = (
                         value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
                         - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
                     )
-                    # the arc: cosines from its centre
                     highest_q6_of_q3_up = (
                         1.0
                         if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
@@ -1431,7 +1445,7 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                     )
                 else:
-                    highest_q6_of_q3_up = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3_up = 1.0
                     lowest_q6_of_q3_up = -1.0
                 near_q6_of_q3_up = arctan2(root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)), highest_q6_of_q3_up)
                 far_q6_of_q3_up = arctan2(root((1.0 - lowest_q6_of_q3_up)*(1.0 + lowest_q6_of_q3_up)), lowest_q6_of_q3_up)
@@ -1460,28 +1474,27 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                # moved to where the rest can be reached
                 if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_up = cos_q6_before_q6_of_q3_up  # moved to where the rest can be reached
-                    sin_q6_up = sin_q6_before_q6_of_q3_up  # moved to where the rest can be reached
+                    cos_q6_up = cos_q6_before_q6_of_q3_up
+                    sin_q6_up = sin_q6_before_q6_of_q3_up
                 else:
-                    cos_q6_up = cos_q6_after_q6_of_q3_up  # moved to where the rest can be reached
-                    sin_q6_up = sin_q6_after_q6_of_q3_up  # moved to where the rest can be reached
+                    cos_q6_up = cos_q6_after_q6_of_q3_up
+                    sin_q6_up = sin_q6_after_q6_of_q3_up
         r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
         # what the unknown links must span
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
+        sine_square_q3 = (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
         refusal_right_down = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right)*RADIAN  # A1: its turn
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
@@ -1507,15 +1520,13 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
+        sine_square_q3 = (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
         refusal_right_up = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
@@ -1624,33 +1635,36 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return None
+        # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d4/divisor_q1
             sin_swing_q1 = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_shoulder
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1
             sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)  # its reference where it is free
+            cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         q6_radius_of_q5 = radius_q6*sigma_wrist
         cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
+        # its reference where it is free
         if radius_q6 > 1e-11:
             along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
-            cos_q6_before_q6_of_q3 = along_q6/radius_q6  # its reference where it is free
+            cos_q6_before_q6_of_q3 = along_q6/radius_q6
             across_q6 = r22_from_q1*sigma_wrist
             sin_q6_before_q6_of_q3 = across_q6/radius_q6
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
-            cos_q6_before_q6_of_q3 = cos(free_a6)  # its reference where it is free
+            cos_q6_before_q6_of_q3 = cos(free_a6)
             sin_q6_before_q6_of_q3 = sin(free_a6)
         wrist_z = z - d6*r33
+        # moved to where the rest can be reached
         if radius_q6 > 0.01:
-            cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-            sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+            cos_q6 = cos_q6_before_q6_of_q3
+            sin_q6 = sin_q6_before_q6_of_q3
         else:
             wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
             wrist_x_from_q1_along = -d5*r31*cos_q5
@@ -1671,9 +1685,10 @@ def unrolled(k: Constants) -> Unrolled:
                 wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here
                 - a2_squared_plus_a3_squared
             )
+            # moved to where the rest can be reached
             if abs(value_q6_of_q3) <= size_q6_of_q3:
-                cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-                sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+                cos_q6 = cos_q6_before_q6_of_q3
+                sin_q6 = sin_q6_before_q6_of_q3
             else:
                 along_q6_of_q3 = (
                     2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
@@ -1682,11 +1697,11 @@ def unrolled(k: Constants) -> Unrolled:
                     2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+                # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
                     level_q6_of_q3 = (
                         value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
                     )
-                    # the arc: cosines from its centre
                     highest_q6_of_q3 = (
                         1.0
                         if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
@@ -1706,7 +1721,7 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                     )
                 else:
-                    highest_q6_of_q3 = 1.0  # the arc: cosines from its centre
+                    highest_q6_of_q3 = 1.0
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
@@ -1731,30 +1746,29 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
+                # moved to where the rest can be reached
                 if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-                    sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+                    cos_q6 = cos_q6_before_q6_of_q3
+                    sin_q6 = sin_q6_before_q6_of_q3
                 else:
-                    cos_q6 = cos_q6_after_q6_of_q3  # moved to where the rest can be reached
-                    sin_q6 = sin_q6_after_q6_of_q3  # moved to where the rest can be reached
+                    cos_q6 = cos_q6_after_q6_of_q3
+                    sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
         # what the unknown links must span
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
+        sine_square_q3 = (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)

@@ -82,15 +82,14 @@ def unrolled(k: Constants) -> Unrolled:
         if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
             return 2*(3.0,)
         radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        # a4: polar angle in the r33 and r13 equations; its reference where it is free
         if radius_a4 > 1e-11:
-            direction_x_a4_upright = r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4_upright = r33
             direction_y_a4_upright = r13
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # a4: polar angle in the r33 and r13 equations; its reference where it is free
             direction_x_a4_upright = cos(free_a4)
             direction_y_a4_upright = sin(free_a4)
-            # a4: polar angle in the r33 and r13 equations; its reference where it is free
             direction_x_a4_flipped = direction_x_a4_upright
             direction_y_a4_flipped = direction_y_a4_upright
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
@@ -102,10 +101,10 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_upright - open_a5 < 179.999999999:
             axis_a5_upright = nearest_period(axis_a5_upright, open_a5)
-        r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
-        sin_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
+        r11_from_a4 = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
+        sin_a6 = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
-        axis_a6_upright = offset_a6 + arctan2(sin_a6_upright, r11_from_a4_upright + 0.0)/DEGREE  # A6: its turn
+        axis_a6_upright = offset_a6 + arctan2(sin_a6, r11_from_a4 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_upright - open_a6 < 179.999999999:
             axis_a6_upright = nearest_period(axis_a6_upright, open_a6)
         # limits of A4, limits of A5, limits of A6
@@ -121,9 +120,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_upright
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped + 0.0, direction_x_a4_flipped + 0.0)/DEGREE
-            r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
-            sin_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
-            direction_of_axis_a6 = offset_a6 + arctan2(sin_a6_flipped + 0.0, r11_from_a4_flipped + 0.0)/DEGREE
+            r11_from_a4 = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
+            sin_a6 = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
+            direction_of_axis_a6 = offset_a6 + arctan2(sin_a6 + 0.0, r11_from_a4 + 0.0)/DEGREE
         axis_a4_flipped = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_flipped - open_a4 < 179.999999999:
             axis_a4_flipped = nearest_period(axis_a4_flipped, open_a4)
@@ -165,30 +164,29 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        # a4: polar angle in the r33 and r13 equations; its reference where it is free
         if radius_a4 > 1e-11:
-            direction_x_a4_upright = r33  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4_upright = r33
             direction_y_a4_upright = r13
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # a4: polar angle in the r33 and r13 equations; its reference where it is free
             direction_x_a4_upright = cos(free_a4)
             direction_y_a4_upright = sin(free_a4)
-            # a4: polar angle in the r33 and r13 equations; its reference where it is free
             direction_x_a4_flipped = direction_x_a4_upright
             direction_y_a4_flipped = direction_y_a4_upright
         axis_a4 = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright)*RADIAN  # A4: its turn
         axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4)*RADIAN  # A5: its turn
-        r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
-        sin_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
-        axis_a6 = offset_a6 + arctan2(sin_a6_upright, r11_from_a4_upright)*RADIAN  # A6: its turn
+        r11_from_a4 = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
+        sin_a6 = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
+        axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4)*RADIAN  # A6: its turn
         if radius_a4 > 1e-11:
             direction_of_axis_a4 = 180.0 + axis_a4
             direction_of_axis_a6 = 180.0 + axis_a6
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped)*RADIAN
-            r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
-            sin_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
-            direction_of_axis_a6 = offset_a6 + arctan2(sin_a6_flipped, r11_from_a4_flipped)*RADIAN
+            r11_from_a4 = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
+            sin_a6 = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
+            direction_of_axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4)*RADIAN
         axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4)*RADIAN  # A5: its turn
         return (
             (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5_upright, axis_a6),
@@ -207,13 +205,13 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
         axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
+        # a4: polar angle in the r33 and r13 equations; its reference where it is free
         if radius_a4 > 1e-11:
-            # a4: polar angle in the r33 and r13 equations; its reference where it is free
             direction_x_a4 = r33*sigma_wrist
             direction_y_a4 = r13*sigma_wrist
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_a4 = cos(free_a4)  # a4: polar angle in the r33 and r13 equations; its reference where it is free
+            direction_x_a4 = cos(free_a4)
             direction_y_a4 = sin(free_a4)
         axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4)*RADIAN  # A4: its turn
         a4_radius_of_a5 = radius_a4*sigma_wrist

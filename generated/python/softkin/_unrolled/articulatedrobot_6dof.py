@@ -56,10 +56,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a6 = k.single_a6
     swing_scale_q3 = k.swing_scale_q3
     machine_scale_times_free_angle = 1e-11*machine_scale
-    a2_plus_effective_q3 = a2 + effective_q3
-    a2_minus_effective_q3 = a2 - effective_q3
+    a2_minus_effective_q3_squared = (a2 - effective_q3)*(a2 - effective_q3)
+    a2_plus_effective_q3_squared = (a2 + effective_q3)*(a2 + effective_q3)
     swing_scale_q3_squared = swing_scale_q3*swing_scale_q3
     a2_squared_plus_effective_q3_squared = a2*a2 + effective_q3*effective_q3
+    constant_part = 9.999999999999999e-23*machine_scale*machine_scale
     angle_of_a3_by_effective_q3 = arctan2(d4/effective_q3 + 0.0, a3/effective_q3 + 0.0)
     offset_a6_plus_180 = 180.0 + offset_a6
     offset_a5_times_2 = 2.0*offset_a5
@@ -97,38 +98,37 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(3.0,)
+        # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
             cos_swing_q1 = -d3/divisor_q1
             cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
-            # its reference where it is free
             cos_q1_front = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
             cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
             sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
             sin_q1_front = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
-            # its reference where it is free
             cos_q1_back = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
             sin_q1_back = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_front = cos(free_a1)  # its reference where it is free
+            cos_q1_front = cos(free_a1)
             sin_q1_front = sin(free_a1)
-            cos_q1_back = cos_q1_front  # its reference where it is free
+            cos_q1_back = cos_q1_front
             sin_q1_back = sin_q1_front
         r13_from_q1 = r13*cos_q1_front + r23*sin_q1_front
         wrist_x_from_q1 = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
         sine_square_q3 = (
-            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
-            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
+            (reach_squared - a2_minus_effective_q3_squared)*(a2_plus_effective_q3_squared - reach_squared)
+            /swing_scale_q3_squared
         )
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        if reach > machine_scale_times_free_angle:
+        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach_squared > constant_part:
             arm_along_q2 = effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
@@ -148,16 +148,14 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1_front - r13*sin_q1_front
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = cos(free_a4)
             direction_y_q4_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
@@ -173,15 +171,15 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
         r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
         r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         # A6: its turn
         axis_a6_front_down_down = (
-            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down + 0.0)/DEGREE
+            offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234 + 0.0)/DEGREE
         )
         if not -180.000000001 <= axis_a6_front_down_down - open_a6 < 179.999999999:
             axis_a6_front_down_down = nearest_period(axis_a6_front_down_down, open_a6)
@@ -202,10 +200,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_front_down_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up + 0.0, minus_r22_from_q1234_up + 0.0)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234 + 0.0, minus_r22_from_q1234 + 0.0)/DEGREE
             )
         axis_a4_front_down_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_front_down_up - open_a4 < 179.999999999:
@@ -223,16 +221,14 @@ def unrolled(k: Constants) -> Unrolled:
         r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = cos(free_a4)
             direction_y_q4_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
         # A4: its turn
@@ -244,13 +240,11 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a5_front_up_down - open_a5 < 179.999999999:
             axis_a5_front_up_down = nearest_period(axis_a5_front_up_down, open_a5)
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_front_up_down = (
-            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down + 0.0)/DEGREE
-        )
+        axis_a6_front_up_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234 + 0.0)/DEGREE
         if not -180.000000001 <= axis_a6_front_up_down - open_a6 < 179.999999999:
             axis_a6_front_up_down = nearest_period(axis_a6_front_up_down, open_a6)
         axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
@@ -264,10 +258,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_front_up_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up + 0.0, minus_r22_from_q1234_up + 0.0)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234 + 0.0, minus_r22_from_q1234 + 0.0)/DEGREE
             )
         axis_a4_front_up_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_front_up_up - open_a4 < 179.999999999:
@@ -279,8 +273,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a6_front_up_up - open_a6 < 179.999999999:
             axis_a6_front_up_up = nearest_period(axis_a6_front_up_up, open_a6)
         if sine_square_q3 >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
+            # limits of A4, limits of A5, limits of A6
             if axis_a2_front_down >= lowest_a2 and axis_a3_front_down >= lowest_a3 and axis_a2_front_down <= highest_a2 and axis_a3_front_down <= highest_a3:
-                # limits of A4, limits of A5, limits of A6
                 refusal_front_down_down = (
                     0.0
                     if (axis_a4_front_down_down >= lowest_a4) and (axis_a5_front_down_down >= lowest_a5) and (axis_a6_front_down_down >= lowest_a6) and (
@@ -288,7 +282,6 @@ def unrolled(k: Constants) -> Unrolled:
                     ) and (axis_a5_front_down_down <= highest_a5) and (axis_a6_front_down_down <= highest_a6)
                     else 3.0
                 )
-                # limits of A4, limits of A5, limits of A6
                 refusal_front_down_up = (
                     0.0
                     if (axis_a4_front_down_up >= lowest_a4) and (axis_a5_front_down_up >= lowest_a5) and (axis_a6_front_down_up >= lowest_a6) and (
@@ -297,10 +290,10 @@ def unrolled(k: Constants) -> Unrolled:
                     else 3.0
                 )
             else:
-                refusal_front_down_down = 3.0  # limits of A4, limits of A5, limits of A6
-                refusal_front_down_up = 3.0  # limits of A4, limits of A5, limits of A6
+                refusal_front_down_down = 3.0
+                refusal_front_down_up = 3.0
+            # limits of A4, limits of A5, limits of A6
             if axis_a2_front_up >= lowest_a2 and axis_a3_front_up >= lowest_a3 and axis_a2_front_up <= highest_a2 and axis_a3_front_up <= highest_a3:
-                # limits of A4, limits of A5, limits of A6
                 refusal_front_up_down = (
                     0.0
                     if (axis_a4_front_up_down >= lowest_a4) and (axis_a5_front_up_down >= lowest_a5) and (axis_a6_front_up_down >= lowest_a6) and (
@@ -308,7 +301,6 @@ def unrolled(k: Constants) -> Unrolled:
                     ) and (axis_a5_front_up_down <= highest_a5) and (axis_a6_front_up_down <= highest_a6)
                     else 3.0
                 )
-                # limits of A4, limits of A5, limits of A6
                 refusal_front_up_up = (
                     0.0
                     if (axis_a4_front_up_up >= lowest_a4) and (axis_a5_front_up_up >= lowest_a5) and (axis_a6_front_up_up >= lowest_a6) and (
@@ -317,24 +309,24 @@ def unrolled(k: Constants) -> Unrolled:
                     else 3.0
                 )
             else:
-                refusal_front_up_down = 3.0  # limits of A4, limits of A5, limits of A6
-                refusal_front_up_up = 3.0  # limits of A4, limits of A5, limits of A6
+                refusal_front_up_down = 3.0
+                refusal_front_up_up = 3.0
         else:
-            refusal_front_down_down = 3.0  # limits of A4, limits of A5, limits of A6
-            refusal_front_down_up = 3.0  # limits of A4, limits of A5, limits of A6
-            refusal_front_up_down = 3.0  # limits of A4, limits of A5, limits of A6
-            refusal_front_up_up = 3.0  # limits of A4, limits of A5, limits of A6
+            refusal_front_down_down = 3.0
+            refusal_front_down_up = 3.0
+            refusal_front_up_down = 3.0
+            refusal_front_up_up = 3.0
         r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
         wrist_x_from_q1 = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
         sine_square_q3 = (
-            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
-            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
+            (reach_squared - a2_minus_effective_q3_squared)*(a2_plus_effective_q3_squared - reach_squared)
+            /swing_scale_q3_squared
         )
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        if reach > machine_scale_times_free_angle:
+        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach_squared > constant_part:
             arm_along_q2 = effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
@@ -354,16 +346,14 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1_back - r13*sin_q1_back
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = cos(free_a4)
             direction_y_q4_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
         # A4: its turn
@@ -377,15 +367,13 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
         r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_back_down_down = (
-            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down + 0.0)/DEGREE
-        )
+        axis_a6_back_down_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234 + 0.0)/DEGREE
         if not -180.000000001 <= axis_a6_back_down_down - open_a6 < 179.999999999:
             axis_a6_back_down_down = nearest_period(axis_a6_back_down_down, open_a6)
         axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
@@ -402,10 +390,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_back_down_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up + 0.0, minus_r22_from_q1234_up + 0.0)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234 + 0.0, minus_r22_from_q1234 + 0.0)/DEGREE
             )
         axis_a4_back_down_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_back_down_up - open_a4 < 179.999999999:
@@ -423,16 +411,14 @@ def unrolled(k: Constants) -> Unrolled:
         r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = cos(free_a4)
             direction_y_q4_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
         # A4: its turn
@@ -444,13 +430,11 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a5_back_up_down - open_a5 < 179.999999999:
             axis_a5_back_up_down = nearest_period(axis_a5_back_up_down, open_a5)
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_back_up_down = (
-            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down + 0.0)/DEGREE
-        )
+        axis_a6_back_up_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234 + 0.0)/DEGREE
         if not -180.000000001 <= axis_a6_back_up_down - open_a6 < 179.999999999:
             axis_a6_back_up_down = nearest_period(axis_a6_back_up_down, open_a6)
         axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
@@ -464,10 +448,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_back_up_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up + 0.0, minus_r22_from_q1234_up + 0.0)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234 + 0.0, minus_r22_from_q1234 + 0.0)/DEGREE
             )
         axis_a4_back_up_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_back_up_up - open_a4 < 179.999999999:
@@ -479,8 +463,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a6_back_up_up - open_a6 < 179.999999999:
             axis_a6_back_up_up = nearest_period(axis_a6_back_up_up, open_a6)
         if sine_square_q3 >= -1e-12 and axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1:
+            # limits of A4, limits of A5, limits of A6
             if axis_a2_back_down >= lowest_a2 and axis_a3_back_down >= lowest_a3 and axis_a2_back_down <= highest_a2 and axis_a3_back_down <= highest_a3:
-                # limits of A4, limits of A5, limits of A6
                 refusal_back_down_down = (
                     0.0
                     if (axis_a4_back_down_down >= lowest_a4) and (axis_a5_back_down_down >= lowest_a5) and (axis_a6_back_down_down >= lowest_a6) and (
@@ -488,7 +472,6 @@ def unrolled(k: Constants) -> Unrolled:
                     ) and (axis_a5_back_down_down <= highest_a5) and (axis_a6_back_down_down <= highest_a6)
                     else 3.0
                 )
-                # limits of A4, limits of A5, limits of A6
                 refusal_back_down_up = (
                     0.0
                     if (axis_a4_back_down_up >= lowest_a4) and (axis_a5_back_down_up >= lowest_a5) and (axis_a6_back_down_up >= lowest_a6) and (
@@ -497,10 +480,10 @@ def unrolled(k: Constants) -> Unrolled:
                     else 3.0
                 )
             else:
-                refusal_back_down_down = 3.0  # limits of A4, limits of A5, limits of A6
-                refusal_back_down_up = 3.0  # limits of A4, limits of A5, limits of A6
+                refusal_back_down_down = 3.0
+                refusal_back_down_up = 3.0
+            # limits of A4, limits of A5, limits of A6
             if axis_a2_back_up >= lowest_a2 and axis_a3_back_up >= lowest_a3 and axis_a2_back_up <= highest_a2 and axis_a3_back_up <= highest_a3:
-                # limits of A4, limits of A5, limits of A6
                 refusal_back_up_down = (
                     0.0
                     if (axis_a4_back_up_down >= lowest_a4) and (axis_a5_back_up_down >= lowest_a5) and (axis_a6_back_up_down >= lowest_a6) and (
@@ -508,7 +491,6 @@ def unrolled(k: Constants) -> Unrolled:
                     ) and (axis_a5_back_up_down <= highest_a5) and (axis_a6_back_up_down <= highest_a6)
                     else 3.0
                 )
-                # limits of A4, limits of A5, limits of A6
                 refusal_back_up_up = (
                     0.0
                     if (axis_a4_back_up_up >= lowest_a4) and (axis_a5_back_up_up >= lowest_a5) and (axis_a6_back_up_up >= lowest_a6) and (
@@ -517,13 +499,13 @@ def unrolled(k: Constants) -> Unrolled:
                     else 3.0
                 )
             else:
-                refusal_back_up_down = 3.0  # limits of A4, limits of A5, limits of A6
-                refusal_back_up_up = 3.0  # limits of A4, limits of A5, limits of A6
+                refusal_back_up_down = 3.0
+                refusal_back_up_up = 3.0
         else:
-            refusal_back_down_down = 3.0  # limits of A4, limits of A5, limits of A6
-            refusal_back_down_up = 3.0  # limits of A4, limits of A5, limits of A6
-            refusal_back_up_down = 3.0  # limits of A4, limits of A5, limits of A6
-            refusal_back_up_up = 3.0  # limits of A4, limits of A5, limits of A6
+            refusal_back_down_down = 3.0
+            refusal_back_down_up = 3.0
+            refusal_back_up_down = 3.0
+            refusal_back_up_up = 3.0
         return (
             (
                 (
@@ -604,39 +586,38 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 8*(None,)
+        # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
             cos_swing_q1 = -d3/divisor_q1
             cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
-            # its reference where it is free
             cos_q1_front = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
             cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
             sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
             sin_q1_front = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
-            # its reference where it is free
             cos_q1_back = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
             sin_q1_back = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_front = cos(free_a1)  # its reference where it is free
+            cos_q1_front = cos(free_a1)
             sin_q1_front = sin(free_a1)
-            cos_q1_back = cos_q1_front  # its reference where it is free
+            cos_q1_back = cos_q1_front
             sin_q1_back = sin_q1_front
         wrist_x_from_q1 = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
         sine_square_q3 = (
-            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
-            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
+            (reach_squared - a2_minus_effective_q3_squared)*(a2_plus_effective_q3_squared - reach_squared)
+            /swing_scale_q3_squared
         )
         refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN  # A1: its turn
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        if reach > machine_scale_times_free_angle:
+        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach_squared > constant_part:
             arm_along_q2 = effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
@@ -659,16 +640,14 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1_front - r13*sin_q1_front
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = cos(free_a4)
             direction_y_q4_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
         axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
@@ -677,24 +656,22 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
         r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
         r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_front_down_down = (
-            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down)*RADIAN
-        )
+        axis_a6_front_down_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
         if radius_q4 > 1e-11:
             direction_of_axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
             direction_of_axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
         else:
             direction_of_axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_front_down_up = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up, minus_r22_from_q1234_up)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
             )
         axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
         axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
@@ -706,52 +683,48 @@ def unrolled(k: Constants) -> Unrolled:
         r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = cos(free_a4)
             direction_y_q4_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
         axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_front_up_down = (
-            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down)*RADIAN
-        )
+        axis_a6_front_up_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
         if radius_q4 > 1e-11:
             direction_of_axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
             direction_of_axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
         else:
             direction_of_axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_front_up_up = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up, minus_r22_from_q1234_up)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
             )
         axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
         wrist_x_from_q1 = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
         sine_square_q3 = (
-            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
-            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
+            (reach_squared - a2_minus_effective_q3_squared)*(a2_plus_effective_q3_squared - reach_squared)
+            /swing_scale_q3_squared
         )
         refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN  # A1: its turn
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        if reach > machine_scale_times_free_angle:
+        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach_squared > constant_part:
             arm_along_q2 = effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
@@ -774,16 +747,14 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1_back - r13*sin_q1_back
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = cos(free_a4)
             direction_y_q4_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
         axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
@@ -792,24 +763,22 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
         r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_back_down_down = (
-            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down)*RADIAN
-        )
+        axis_a6_back_down_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
         if radius_q4 > 1e-11:
             direction_of_axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
             direction_of_axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
         else:
             direction_of_axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_back_down_up = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up, minus_r22_from_q1234_up)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
             )
         axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
         axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
@@ -821,38 +790,34 @@ def unrolled(k: Constants) -> Unrolled:
         r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_down = cos(free_a4)
             direction_y_q4_down = sin(free_a4)
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4_up = direction_x_q4_down
             direction_y_q4_up = direction_y_q4_down
         axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_back_up_down = (
-            offset_a6_plus_180 + arctan2(minus_r21_from_q1234_down, minus_r22_from_q1234_down)*RADIAN
-        )
+        axis_a6_back_up_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
         if radius_q4 > 1e-11:
             direction_of_axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
             direction_of_axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
         else:
             direction_of_axis_a4_back_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_back_up_up = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234_up, minus_r22_from_q1234_up)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
             )
         axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: its turn
         return (
@@ -936,31 +901,32 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return None
+        # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d3/divisor_q1
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1
             sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)  # its reference where it is free
+            cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
         sine_square_q3 = (
-            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
-            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
+            (reach_squared - a2_minus_effective_q3_squared)*(a2_plus_effective_q3_squared - reach_squared)
+            /swing_scale_q3_squared
         )
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        if reach > machine_scale_times_free_angle:
+        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach_squared > constant_part:
             arm_along_q2 = -effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
@@ -981,13 +947,13 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            # q4: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_q4 = -r13_from_q123*sigma_hand
             direction_y_q4 = r23_from_q1*sigma_hand
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4 = cos(free_a4)  # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_q4 = cos(free_a4)
             direction_y_q4 = sin(free_a4)
         axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN  # A4: its turn
         q4_radius_of_q5 = radius_q4*sigma_hand

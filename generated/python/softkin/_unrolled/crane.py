@@ -45,12 +45,13 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
             return 1*(3.0,)
+        # its reference where it is free
         if radius_theta > machine_scale_times_free_angle:
-            direction_x_theta = x  # its reference where it is free
+            direction_x_theta = x
             direction_y_theta = y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
         open_theta = mid_theta if single_theta > 0.0 else ref_theta  # Theta: where its turn is open
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta + 0.0)/DEGREE  # Theta: its turn
@@ -59,12 +60,13 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of Theta
         if not (axis_theta >= lowest_theta and axis_theta <= highest_theta):
             return 1*(3.0,)
+        # its reference where it is free
         if radius_phi > machine_scale_times_free_angle:
-            direction_x_phi = z  # its reference where it is free
+            direction_x_phi = z
             direction_y_phi = radius_theta
         else:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
             direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         # limits of Phi
@@ -81,20 +83,22 @@ def unrolled(k: Constants) -> Unrolled:
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
+        # its reference where it is free
         if radius_theta > machine_scale_times_free_angle:
-            direction_x_theta = x  # its reference where it is free
+            direction_x_theta = x
             direction_y_theta = y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN  # Theta: its turn
+        # its reference where it is free
         if radius_phi > machine_scale_times_free_angle:
-            direction_x_phi = z  # its reference where it is free
+            direction_x_phi = z
             direction_y_phi = radius_theta
         else:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
             direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
         axis_phi = offset_phi + arctan2(direction_y_phi, direction_x_phi)*RADIAN
         return (
@@ -108,20 +112,22 @@ def unrolled(k: Constants) -> Unrolled:
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
+        # its reference where it is free
         if radius_theta > machine_scale_times_free_angle:
-            direction_x_theta = x  # its reference where it is free
+            direction_x_theta = x
             direction_y_theta = y
         else:
             free_theta = (ref_theta - offset_theta)*DEGREE
-            direction_x_theta = cos(free_theta)  # its reference where it is free
+            direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
         axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN  # Theta: its turn
+        # its reference where it is free
         if radius_phi > machine_scale_times_free_angle:
-            direction_x_phi = z  # its reference where it is free
+            direction_x_phi = z
             direction_y_phi = radius_theta
         else:
             free_phi = (ref_phi - offset_phi)*DEGREE
-            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))  # its reference where it is free
+            direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
             direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
         axis_phi = offset_phi + arctan2(direction_y_phi, direction_x_phi)*RADIAN
         return (axis_r, axis_theta, axis_phi)

@@ -230,6 +230,7 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_1_z = -inner_arm_1*sin_a1  # rod 1
             rod_1_z = z - pivot_1_z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_outward_outward = (
                         constant_part_7
@@ -239,11 +240,10 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
                         )
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_outward_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_inward = (
                         constant_part_7
@@ -253,17 +253,14 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
                         )
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_inward_2 = 3.0
             else:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_outward_outward_outward_2 = 3.0
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_outward_outward_inward_2 = 3.0
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_inward_outward = (
                         constant_part_7
@@ -273,11 +270,10 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
                         )
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_outward_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_inward = (
                         constant_part_7
@@ -287,24 +283,16 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
                         )
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_inward_2 = 3.0
             else:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_outward_inward_outward_2 = 3.0
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_outward_inward_inward_2 = 3.0
         else:
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_outward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_outward_inward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_inward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_inward_inward_2 = 3.0
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 + sin_swing_a1_times_z_by_divisor_a1
         sin_a1 = along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
@@ -319,6 +307,7 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_1_z = -inner_arm_1*sin_a1  # rod 1
             rod_1_z = z - pivot_1_z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_outward_outward = (
                         constant_part_7
@@ -328,11 +317,10 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_outward*rod_3_z_outward - rod_1_z*rod_2_y_outward*rod_3_x_outward
                         )
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_outward_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_inward = (
                         constant_part_7
@@ -342,17 +330,14 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_outward*rod_3_z_inward - rod_1_z*rod_2_y_outward*rod_3_x_inward
                         )
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_inward_2 = 3.0
             else:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_inward_outward_outward_2 = 3.0
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_inward_outward_inward_2 = 3.0
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_inward_outward = (
                         constant_part_7
@@ -362,11 +347,10 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_inward*rod_3_z_outward - rod_1_z*rod_2_y_inward*rod_3_x_outward
                         )
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_outward_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_inward = (
                         constant_part_7
@@ -376,24 +360,16 @@ def unrolled(k: Constants) -> Unrolled:
                             - rod_1_y*rod_2_x_inward*rod_3_z_inward - rod_1_z*rod_2_y_inward*rod_3_x_inward
                         )
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_inward_2 = 3.0
             else:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_inward_inward_outward_2 = 3.0
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_inward_inward_inward_2 = 3.0
         else:
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_outward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_outward_inward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_inward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_inward_inward_2 = 3.0
         return (
             (

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -55,9 +55,9 @@ def unrolled(k: Constants) -> Unrolled:
             return 1*(2.0,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length_squared = heading_across*heading_across + heading_along*heading_along
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not (heading_length_squared > 9.999999999999999e-23):
             return 1*(3.0,)
         axis_x = offset_x + x
         # limits of X
@@ -88,9 +88,9 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length_squared = heading_across*heading_across + heading_along*heading_along
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not (heading_length_squared > 9.999999999999999e-23):
             return 1*(None,)
         axis_x = offset_x + x
         axis_y = offset_y + y
@@ -106,9 +106,9 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length_squared = heading_across*heading_across + heading_along*heading_along
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not (heading_length_squared > 9.999999999999999e-23):
             return None
         axis_x = offset_x + x
         axis_y = offset_y + y

@@ -209,6 +209,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_right - open_a2 < 179.999999999:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
+        # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
         if sine_square_a2 >= -1e-12 and axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link:
             pivot_upper_x = -link_length_1*sin_a1  # rod upper
             pivot_upper_y = -link_length_1*cos_a1  # rod upper
@@ -249,7 +250,6 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                 )
             )
-            # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
             refusal_left_left = (
                 0.0
                 if (axis_a2_left_left >= lowest_a2) and (
@@ -287,7 +287,6 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                 )
             )
-            # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
             refusal_left_right = (
                 0.0
                 if (axis_a2_left_right >= lowest_a2) and (
@@ -296,9 +295,7 @@ def unrolled(k: Constants) -> Unrolled:
                 else 3.0
             )
         else:
-            # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
             refusal_left_left = 3.0
-            # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
             refusal_left_right = 3.0
         sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
         cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
@@ -359,6 +356,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_right - open_a2 < 179.999999999:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
+        # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
         if sine_square_a2 >= -1e-12 and axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link:
             pivot_upper_x = -link_length_1*sin_a1  # rod upper
             pivot_upper_y = -link_length_1*cos_a1  # rod upper
@@ -402,7 +400,6 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                 )
             )
-            # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
             refusal_right_left = (
                 0.0
                 if (axis_a2_right_left >= lowest_a2) and (
@@ -440,7 +437,6 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                 )
             )
-            # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
             refusal_right_right = (
                 0.0
                 if (axis_a2_right_right >= lowest_a2) and (
@@ -449,9 +445,7 @@ def unrolled(k: Constants) -> Unrolled:
                 else 3.0
             )
         else:
-            # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
             refusal_right_left = 3.0
-            # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
             refusal_right_right = 3.0
         return (
             ((axis_a1_left, axis_a2_left_left) if refusal_left_left == 0.0 else refusal_left_left),
@@ -568,6 +562,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_right = (
             across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
+        # arms_aligned: the other assembly mode, or too near to losing the plate
         if sine_square_a2 >= -1e-12 and effective_a2 > link_length_5_times_shortest_link:
             pivot_upper_x = -link_length_1*sin_a1  # rod upper
             pivot_upper_y = -link_length_1*cos_a1  # rod upper
@@ -608,7 +603,6 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                 )
             )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_left_left = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
             pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_right  # rod rear
             pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_right  # rod rear
@@ -640,11 +634,10 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                 )
             )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_left_right = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
         else:
-            refusal_left_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_left_left = 3.0
+            refusal_left_right = 3.0
         axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
         axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)*RADIAN  # A2: its turn
         axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)*RADIAN  # A2: its turn
@@ -698,6 +691,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
         cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
         sin_a2_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
+        # arms_aligned: the other assembly mode, or too near to losing the plate
         if sine_square_a2 >= -1e-12 and effective_a2 > link_length_5_times_shortest_link:
             pivot_upper_x = -link_length_1*sin_a1  # rod upper
             pivot_upper_y = -link_length_1*cos_a1  # rod upper
@@ -741,7 +735,6 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                 )
             )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_right_left = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
             pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right  # rod rear
             pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right  # rod rear
@@ -773,11 +766,10 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                 )
             )
-            # arms_aligned: the other assembly mode, or too near to losing the plate
             refusal_right_right = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
         else:
-            refusal_right_left = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_right = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_right_left = 3.0
+            refusal_right_right = 3.0
         axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
         axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)*RADIAN  # A2: its turn
         axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)*RADIAN  # A2: its turn

@@ -128,25 +128,25 @@ def unrolled(k: Constants) -> Unrolled:
             rod_1_x = x - pivot_1_x
             pivot_1_y = inner_arm*sin_a1  # rod 1
             rod_1_y = y - pivot_1_y
+            # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 type2_arms_aligned_outward = (
                     assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
                 )
-                # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_outward_outward_2 = 0.0 if type2_arms_aligned_outward >= min_type2_margin else 3.0
             else:
-                refusal_outward_outward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+                refusal_outward_outward_2 = 3.0
+            # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 type2_arms_aligned_inward = (
                     assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
                 )
-                # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_outward_inward_2 = 0.0 if type2_arms_aligned_inward >= min_type2_margin else 3.0
             else:
-                refusal_outward_inward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+                refusal_outward_inward_2 = 3.0
         else:
-            refusal_outward_outward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_outward_inward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_outward_outward_2 = 3.0
+            refusal_outward_inward_2 = 3.0
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
         axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
@@ -157,25 +157,25 @@ def unrolled(k: Constants) -> Unrolled:
             rod_1_x = x - pivot_1_x
             pivot_1_y = inner_arm*sin_a1  # rod 1
             rod_1_y = y - pivot_1_y
+            # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 type2_arms_aligned_outward = (
                     assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
                 )
-                # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_inward_outward_2 = 0.0 if type2_arms_aligned_outward >= min_type2_margin else 3.0
             else:
-                refusal_inward_outward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+                refusal_inward_outward_2 = 3.0
+            # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
                 type2_arms_aligned_inward = (
                     assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
                 )
-                # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_inward_inward_2 = 0.0 if type2_arms_aligned_inward >= min_type2_margin else 3.0
             else:
-                refusal_inward_inward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+                refusal_inward_inward_2 = 3.0
         else:
-            refusal_inward_outward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_inward_inward_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_inward_outward_2 = 3.0
+            refusal_inward_inward_2 = 3.0
         return (
             ((axis_a1_outward, axis_a2_outward) if refusal_outward_outward_2 == 0.0 else refusal_outward_outward_2),
             ((axis_a1_inward, axis_a2_outward) if refusal_inward_outward_2 == 0.0 else refusal_inward_outward_2),

@@ -72,42 +72,42 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_1_x = a1 + tcp_offset_1  # rod 1
             rod_1_x = x - pivot_1_x
             rod_1_x_times_span_2_y = rod_1_x*span_2_y
+            # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
                 type2_arms_aligned_right = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
-                # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_left_right_2 = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
             else:
-                refusal_left_right_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+                refusal_left_right_2 = 3.0
+            # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
                 type2_arms_aligned_left = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
-                # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_left_left_2 = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
             else:
-                refusal_left_left_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+                refusal_left_left_2 = 3.0
         else:
-            refusal_left_right_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_left_left_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_left_right_2 = 3.0
+            refusal_left_left_2 = 3.0
         a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         axis_a1_right = a1 + offset_a1
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
             pivot_1_x = a1 + tcp_offset_1  # rod 1
             rod_1_x = x - pivot_1_x
             rod_1_x_times_span_2_y = rod_1_x*span_2_y
+            # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
                 type2_arms_aligned_right = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
-                # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_right_right_2 = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
             else:
-                refusal_right_right_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+                refusal_right_right_2 = 3.0
+            # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
                 type2_arms_aligned_left = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
-                # arms_aligned: the other assembly mode, or too near to losing the plate
                 refusal_right_left_2 = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
             else:
-                refusal_right_left_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+                refusal_right_left_2 = 3.0
         else:
-            refusal_right_right_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
-            refusal_right_left_2 = 3.0  # arms_aligned: the other assembly mode, or too near to losing the plate
+            refusal_right_right_2 = 3.0
+            refusal_right_left_2 = 3.0
         return (
             ((axis_a1_left, axis_a2_right) if refusal_left_right_2 == 0.0 else refusal_left_right_2),
             ((axis_a1_right, axis_a2_right) if refusal_right_right_2 == 0.0 else refusal_right_right_2),

@@ -37,12 +37,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
             return 1*(2.0,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        # its reference where it is free
         if radius_c > machine_scale_times_free_angle:
-            direction_x_c = x  # its reference where it is free
+            direction_x_c = x
             direction_y_c = y
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         axis_c = offset_c + arctan2(direction_y_c, direction_x_c + 0.0)/DEGREE  # C: its turn
@@ -68,12 +69,13 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_c, _, _ = reference
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        # its reference where it is free
         if radius_c > machine_scale_times_free_angle:
-            direction_x_c = x  # its reference where it is free
+            direction_x_c = x
             direction_y_c = y
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
         axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN  # C: its turn
         axis_r = offset_r + radius_c
@@ -87,12 +89,13 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         ref_c, _, _ = reference
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
+        # its reference where it is free
         if radius_c > machine_scale_times_free_angle:
-            direction_x_c = x  # its reference where it is free
+            direction_x_c = x
             direction_y_c = y
         else:
             free_c = (ref_c - offset_c)*DEGREE
-            direction_x_c = cos(free_c)  # its reference where it is free
+            direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
         axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN  # C: its turn
         axis_r = offset_r + radius_c

@@ -40,10 +40,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
     machine_scale_times_free_angle = 1e-11*machine_scale
-    a2_plus_effective_q3_2 = a2 + effective_q3_2
-    a2_minus_effective_q3_2 = a2 - effective_q3_2
+    a2_minus_effective_q3_2_squared = (a2 - effective_q3_2)*(a2 - effective_q3_2)
+    a2_plus_effective_q3_2_squared = (a2 + effective_q3_2)*(a2 + effective_q3_2)
     swing_scale_q3_2_squared = swing_scale_q3_2*swing_scale_q3_2
     a2_squared_plus_effective_q3_2_squared = a2*a2 + effective_q3_2*effective_q3_2
+    constant_part = 9.999999999999999e-23*machine_scale*machine_scale
     angle_of_a3_by_effective_q3_2 = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -63,34 +64,35 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 4*(3.0,)
+        # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             sin_swing_q1_times_x = x*sin_swing_q1
             cos_swing_q1 = -d3/divisor_q1
             cos_swing_q1_times_y = y*cos_swing_q1
-            cos_q1_front = (cos_swing_q1_times_y + sin_swing_q1_times_x)/divisor_q1  # its reference where it is free
+            cos_q1_front = (cos_swing_q1_times_y + sin_swing_q1_times_x)/divisor_q1
             cos_swing_q1_times_x = x*cos_swing_q1
             sin_swing_q1_times_y = y*sin_swing_q1
             sin_q1_front = (sin_swing_q1_times_y - cos_swing_q1_times_x)/divisor_q1
-            cos_q1_back = (cos_swing_q1_times_y - sin_swing_q1_times_x)/divisor_q1  # its reference where it is free
+            cos_q1_back = (cos_swing_q1_times_y - sin_swing_q1_times_x)/divisor_q1
             sin_q1_back = (-cos_swing_q1_times_x - sin_swing_q1_times_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_front = cos(free_a1)  # its reference where it is free
+            cos_q1_front = cos(free_a1)
             sin_q1_front = sin(free_a1)
-            cos_q1_back = cos_q1_front  # its reference where it is free
+            cos_q1_back = cos_q1_front
             sin_q1_back = sin_q1_front
         wrist_x_from_q1 = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
         sine_square_q3 = (
-            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
-            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
+            (reach_squared - a2_minus_effective_q3_2_squared)*(a2_plus_effective_q3_2_squared - reach_squared)
+            /swing_scale_q3_2_squared
         )
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        if reach > machine_scale_times_free_angle:
+        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach_squared > constant_part:
             arm_along_q2 = effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
@@ -122,8 +124,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_front_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
+        # limits of A2, limits of A3
         if sine_square_q3 >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
-            # limits of A2, limits of A3
             refusal_front_down = (
                 0.0
                 if (axis_a2_front_down >= lowest_a2) and (axis_a3_front_down >= lowest_a3) and (
@@ -131,7 +133,6 @@ def unrolled(k: Constants) -> Unrolled:
                 ) and (axis_a3_front_down <= highest_a3)
                 else 3.0
             )
-            # limits of A2, limits of A3
             refusal_front_up = (
                 0.0
                 if (axis_a2_front_up >= lowest_a2) and (axis_a3_front_up >= lowest_a3) and (
@@ -140,18 +141,18 @@ def unrolled(k: Constants) -> Unrolled:
                 else 3.0
             )
         else:
-            refusal_front_down = 3.0  # limits of A2, limits of A3
-            refusal_front_up = 3.0  # limits of A2, limits of A3
+            refusal_front_down = 3.0
+            refusal_front_up = 3.0
         wrist_x_from_q1 = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
         sine_square_q3 = (
-            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
-            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
+            (reach_squared - a2_minus_effective_q3_2_squared)*(a2_plus_effective_q3_2_squared - reach_squared)
+            /swing_scale_q3_2_squared
         )
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        if reach > machine_scale_times_free_angle:
+        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach_squared > constant_part:
             arm_along_q2 = effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
@@ -180,8 +181,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_back_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
+        # limits of A2, limits of A3
         if sine_square_q3 >= -1e-12 and axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1:
-            # limits of A2, limits of A3
             refusal_back_down = (
                 0.0
                 if (axis_a2_back_down >= lowest_a2) and (axis_a3_back_down >= lowest_a3) and (
@@ -189,7 +190,6 @@ def unrolled(k: Constants) -> Unrolled:
                 ) and (axis_a3_back_down <= highest_a3)
                 else 3.0
             )
-            # limits of A2, limits of A3
             refusal_back_up = (
                 0.0
                 if (axis_a2_back_up >= lowest_a2) and (axis_a3_back_up >= lowest_a3) and (
@@ -198,8 +198,8 @@ def unrolled(k: Constants) -> Unrolled:
                 else 3.0
             )
         else:
-            refusal_back_down = 3.0  # limits of A2, limits of A3
-            refusal_back_up = 3.0  # limits of A2, limits of A3
+            refusal_back_down = 3.0
+            refusal_back_up = 3.0
         return (
             (
                 (axis_a1_front, axis_a2_front_down, axis_a3_front_down)
@@ -222,36 +222,37 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return 4*(None,)
+        # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
             sin_swing_q1_times_x = x*sin_swing_q1
             cos_swing_q1 = -d3/divisor_q1
             cos_swing_q1_times_y = y*cos_swing_q1
-            cos_q1_front = (cos_swing_q1_times_y + sin_swing_q1_times_x)/divisor_q1  # its reference where it is free
+            cos_q1_front = (cos_swing_q1_times_y + sin_swing_q1_times_x)/divisor_q1
             cos_swing_q1_times_x = x*cos_swing_q1
             sin_swing_q1_times_y = y*sin_swing_q1
             sin_q1_front = (sin_swing_q1_times_y - cos_swing_q1_times_x)/divisor_q1
-            cos_q1_back = (cos_swing_q1_times_y - sin_swing_q1_times_x)/divisor_q1  # its reference where it is free
+            cos_q1_back = (cos_swing_q1_times_y - sin_swing_q1_times_x)/divisor_q1
             sin_q1_back = (-cos_swing_q1_times_x - sin_swing_q1_times_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_front = cos(free_a1)  # its reference where it is free
+            cos_q1_front = cos(free_a1)
             sin_q1_front = sin(free_a1)
-            cos_q1_back = cos_q1_front  # its reference where it is free
+            cos_q1_back = cos_q1_front
             sin_q1_back = sin_q1_front
         wrist_x_from_q1 = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
         sine_square_q3 = (
-            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
-            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
+            (reach_squared - a2_minus_effective_q3_2_squared)*(a2_plus_effective_q3_2_squared - reach_squared)
+            /swing_scale_q3_2_squared
         )
         refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN  # A1: its turn
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        if reach > machine_scale_times_free_angle:
+        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach_squared > constant_part:
             arm_along_q2 = effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
@@ -270,17 +271,17 @@ def unrolled(k: Constants) -> Unrolled:
         angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3*RADIAN  # A3: its turn
         wrist_x_from_q1 = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
         sine_square_q3 = (
-            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
-            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
+            (reach_squared - a2_minus_effective_q3_2_squared)*(a2_plus_effective_q3_2_squared - reach_squared)
+            /swing_scale_q3_2_squared
         )
         refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN  # A1: its turn
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        if reach > machine_scale_times_free_angle:
+        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach_squared > constant_part:
             arm_along_q2 = effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
@@ -317,30 +318,31 @@ def unrolled(k: Constants) -> Unrolled:
         # q1: out of reach
         if not (sine_square_q1 >= -1e-12):
             return None
+        # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             cos_swing_q1 = -d3/divisor_q1
             sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
+            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1
             sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)  # its reference where it is free
+            cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
         # kept as a product
         sine_square_q3 = (
-            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
-            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
+            (reach_squared - a2_minus_effective_q3_2_squared)*(a2_plus_effective_q3_2_squared - reach_squared)
+            /swing_scale_q3_2_squared
         )
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        if reach > machine_scale_times_free_angle:
+        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach_squared > constant_part:
             arm_along_q2 = -effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)

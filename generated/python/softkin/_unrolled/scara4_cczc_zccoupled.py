@@ -41,11 +41,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a4 = k.single_a4
     flange_down_times_2_minus_1 = 2.0*flange_down - 1.0
-    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    constant_part = (link_length_1 - link_length_2)*(link_length_1 - link_length_2)
+    link_length_1_plus_link_length_2_squared = (link_length_1 + link_length_2)*(link_length_1 + link_length_2)
     scale_a2_squared = scale_a2*scale_a2
-    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
-    machine_scale_times_free_angle = 1e-11*machine_scale
+    constant_part_2 = link_length_1*link_length_1 + link_length_2*link_length_2
+    constant_part_3 = 9.999999999999999e-23*machine_scale*machine_scale
     pitch_zc_by_360 = pitch_zc/360.0
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -74,22 +74,22 @@ def unrolled(k: Constants) -> Unrolled:
         # projection: the tool direction swings to the machine's, the twist is kept
         heading_along = r11 - flange_down_times_2_minus_1*r22
         heading_across = r21 + flange_down_times_2_minus_1*r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length_squared = heading_across*heading_across + heading_along*heading_along
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not (heading_length_squared > 9.999999999999999e-23):
             return 2*(3.0,)
-        reach = sqrt(x*x + y*y)
+        reach_squared = x*x + y*y
         # kept as a product
         sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
+            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
+            /scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach_squared - constant_part_2)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part_3:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
@@ -159,22 +159,22 @@ def unrolled(k: Constants) -> Unrolled:
         # projection: the tool direction swings to the machine's, the twist is kept
         heading_along = r11 - flange_down_times_2_minus_1*r22
         heading_across = r21 + flange_down_times_2_minus_1*r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length_squared = heading_across*heading_across + heading_along*heading_along
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not (heading_length_squared > 9.999999999999999e-23):
             return 2*(None,)
-        reach = sqrt(x*x + y*y)
+        reach_squared = x*x + y*y
         # kept as a product
         sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
+            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
+            /scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach_squared - constant_part_2)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part_3:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
@@ -215,22 +215,22 @@ def unrolled(k: Constants) -> Unrolled:
         # projection: the tool direction swings to the machine's, the twist is kept
         heading_along = r11 - flange_down_times_2_minus_1*r22
         heading_across = r21 + flange_down_times_2_minus_1*r12
-        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
+        heading_length_squared = heading_across*heading_across + heading_along*heading_along
         # the tool points exactly the opposite way
-        if not (heading_length > 1e-11):
+        if not (heading_length_squared > 9.999999999999999e-23):
             return None
-        reach = sqrt(x*x + y*y)
+        reach_squared = x*x + y*y
         # kept as a product
         sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
+            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
+            /scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach_squared - constant_part_2)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part_3:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)

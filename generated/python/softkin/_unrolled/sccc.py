@@ -43,11 +43,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     machine_scale_times_plane = 1e-6*machine_scale
-    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    constant_part = (link_length_1 - link_length_2)*(link_length_1 - link_length_2)
+    link_length_1_plus_link_length_2_squared = (link_length_1 + link_length_2)*(link_length_1 + link_length_2)
     scale_a2_squared = scale_a2*scale_a2
-    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
-    machine_scale_times_free_angle = 1e-11*machine_scale
+    constant_part_2 = link_length_1*link_length_1 + link_length_2*link_length_2
+    constant_part_3 = 9.999999999999999e-23*machine_scale*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -86,18 +86,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
         # kept as a product
         sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
+            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
+            /scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach_squared - constant_part_2)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part_3:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
@@ -118,16 +118,17 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
+        # A2: where its turn is open
         if single_a2 > 0.0:
-            open_a2_right = mid_a2  # A2: where its turn is open
-            open_a2_left = mid_a2  # A2: where its turn is open
+            open_a2_right = mid_a2
+            open_a2_left = mid_a2
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             free_a2 = ref_motor_a2 + coupling_12*free_a1
             part_of_open_a2 = offset_a2 + free_a2/DEGREE
-            open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right/DEGREE  # A2: where its turn is open
-            open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left/DEGREE  # A2: where its turn is open
+            open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right/DEGREE
+            open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left/DEGREE
         axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
@@ -137,18 +138,17 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         motor_a2_left = DEGREE*(axis_a2_left - offset_a2)
+        # A3: where its turn is open
         if single_a3 > 0.0:
-            open_a3_right = mid_a3  # A3: where its turn is open
-            open_a3_left = mid_a3  # A3: where its turn is open
+            open_a3_right = mid_a3
+            open_a3_left = mid_a3
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
             ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
             free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
             part_of_open_a3 = offset_a3 + free_a3/DEGREE
-            # A3: where its turn is open
             open_a3_right = part_of_open_a3 + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE
-            # A3: where its turn is open
             open_a3_left = part_of_open_a3 + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = (
@@ -213,18 +213,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
         # kept as a product
         sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
+            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
+            /scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach_squared - constant_part_2)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part_3:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
@@ -280,18 +280,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
+        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
         # kept as a product
         sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
+            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
+            /scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach_squared - constant_part_2)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach > machine_scale_times_free_angle:
+        if reach_squared > constant_part_3:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)

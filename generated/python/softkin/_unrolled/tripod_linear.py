@@ -154,6 +154,7 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_1_z = -a1*cos_rail_angle  # rod 1
             rod_1_z = z - pivot_1_z
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_below_below = (
                         (
@@ -163,10 +164,10 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
                 else:
-                    refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_below_below_below_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_below_above = (
                         (
@@ -176,14 +177,14 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
                 else:
-                    refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_below_below_above_2 = 3.0
             else:
-                refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-                refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                refusal_below_below_below_2 = 3.0
+                refusal_below_below_above_2 = 3.0
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_above_below = (
                         (
@@ -193,10 +194,10 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
                 else:
-                    refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_below_above_below_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_above_above = (
                         (
@@ -206,18 +207,17 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
                 else:
-                    refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_below_above_above_2 = 3.0
             else:
-                refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-                refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                refusal_below_above_below_2 = 3.0
+                refusal_below_above_above_2 = 3.0
         else:
-            refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_below_below_below_2 = 3.0
+            refusal_below_below_above_2 = 3.0
+            refusal_below_above_below_2 = 3.0
+            refusal_below_above_above_2 = 3.0
         a1 = -middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         axis_a1_above = a1 + offset_a1
         if axis_a1_above >= lowest_a1 and axis_a1_above <= highest_a1:
@@ -226,6 +226,7 @@ def unrolled(k: Constants) -> Unrolled:
             pivot_1_z = -a1*cos_rail_angle  # rod 1
             rod_1_z = z - pivot_1_z
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_below_below = (
                         (
@@ -235,10 +236,10 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
                 else:
-                    refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_above_below_below_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_below_above = (
                         (
@@ -248,14 +249,14 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
                 else:
-                    refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_above_below_above_2 = 3.0
             else:
-                refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-                refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                refusal_above_below_below_2 = 3.0
+                refusal_above_below_above_2 = 3.0
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_above_below = (
                         (
@@ -265,10 +266,10 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
                 else:
-                    refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_above_above_below_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_above_above = (
                         (
@@ -278,18 +279,17 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
                 else:
-                    refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_above_above_above_2 = 3.0
             else:
-                refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-                refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                refusal_above_above_below_2 = 3.0
+                refusal_above_above_above_2 = 3.0
         else:
-            refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_above_below_below_2 = 3.0
+            refusal_above_below_above_2 = 3.0
+            refusal_above_above_below_2 = 3.0
+            refusal_above_above_above_2 = 3.0
         return (
             (
                 (axis_a1_below, axis_a2_below, axis_a3_below)

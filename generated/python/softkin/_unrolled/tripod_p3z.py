@@ -113,15 +113,16 @@ def unrolled(k: Constants) -> Unrolled:
                 part_of_type2_rods_coplanar_above_above_above_3 + part_of_type2_rods_coplanar_above_below_above
             )
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_above_above = (
                         (part_of_type2_rods_coplanar_above_above_above_4 - part_of_type2_rods_coplanar_above_above_above_2)
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
                 else:
-                    refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_above_above_above_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_above_below = (
                         (
@@ -130,14 +131,14 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
                 else:
-                    refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_above_above_below_2 = 3.0
             else:
-                refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-                refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                refusal_above_above_above_2 = 3.0
+                refusal_above_above_below_2 = 3.0
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_below_above = (
                         assembly_sign_by_constant_part
@@ -146,10 +147,10 @@ def unrolled(k: Constants) -> Unrolled:
                             - part_of_type2_rods_coplanar_above_below_above_below_above_below_2
                         )
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
                 else:
-                    refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_above_below_above_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_below_below = (
                         (
@@ -158,18 +159,17 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_above_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
                 else:
-                    refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_above_below_below_2 = 3.0
             else:
-                refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-                refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                refusal_above_below_above_2 = 3.0
+                refusal_above_below_below_2 = 3.0
         else:
-            refusal_above_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_above_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_above_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_above_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_above_above_above_2 = 3.0
+            refusal_above_above_below_2 = 3.0
+            refusal_above_below_above_2 = 3.0
+            refusal_above_below_below_2 = 3.0
         a1 = z - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         axis_a1_below = a1 + offset_a1
         if axis_a1_below >= lowest_a1 and axis_a1_below <= highest_a1:
@@ -185,6 +185,7 @@ def unrolled(k: Constants) -> Unrolled:
                 + part_of_type2_rods_coplanar_above_below_above_below_above_below_3
             )
             if axis_a2_above >= lowest_a2 and axis_a2_above <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_above_above = (
                         (
@@ -193,10 +194,10 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_above_above_2 = 0.0 if type2_rods_coplanar_above_above >= min_type2_margin else 3.0
                 else:
-                    refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_below_above_above_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_above_below = (
                         (
@@ -205,14 +206,14 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_above_below_2 = 0.0 if type2_rods_coplanar_above_below >= min_type2_margin else 3.0
                 else:
-                    refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_below_above_below_2 = 3.0
             else:
-                refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-                refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                refusal_below_above_above_2 = 3.0
+                refusal_below_above_below_2 = 3.0
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_above >= lowest_a3 and axis_a3_above <= highest_a3:
                     type2_rods_coplanar_below_above = (
                         (
@@ -221,10 +222,10 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_below_above_2 = 0.0 if type2_rods_coplanar_below_above >= min_type2_margin else 3.0
                 else:
-                    refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_below_below_above_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_below >= lowest_a3 and axis_a3_below <= highest_a3:
                     type2_rods_coplanar_below_below = (
                         (
@@ -233,18 +234,17 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_below_below_below_2 = 0.0 if type2_rods_coplanar_below_below >= min_type2_margin else 3.0
                 else:
-                    refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                    refusal_below_below_below_2 = 3.0
             else:
-                refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-                refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+                refusal_below_below_above_2 = 3.0
+                refusal_below_below_below_2 = 3.0
         else:
-            refusal_below_above_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_below_above_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_below_below_above_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
-            refusal_below_below_below_2 = 3.0  # rods_coplanar: the other assembly mode, or too near to losing the plate
+            refusal_below_above_above_2 = 3.0
+            refusal_below_above_below_2 = 3.0
+            refusal_below_below_above_2 = 3.0
+            refusal_below_below_below_2 = 3.0
         return (
             (
                 (axis_a1_above, axis_a2_above, axis_a3_above)

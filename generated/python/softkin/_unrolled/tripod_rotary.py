@@ -277,6 +277,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             rod_1_z = z - pivot_1_z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_outward_outward = (
                         (
@@ -286,11 +287,10 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_outward_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_inward = (
                         (
@@ -300,17 +300,14 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_outward_inward_2 = 3.0
             else:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_outward_outward_outward_2 = 3.0
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_outward_outward_inward_2 = 3.0
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_inward_outward = (
                         (
@@ -320,11 +317,10 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_outward_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_inward = (
                         (
@@ -334,24 +330,16 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_outward_inward_inward_2 = 3.0
             else:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_outward_inward_outward_2 = 3.0
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_outward_inward_inward_2 = 3.0
         else:
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_outward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_outward_inward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_inward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_outward_inward_inward_2 = 3.0
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
@@ -371,6 +359,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             rod_1_z = z - pivot_1_z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_outward_outward = (
                         (
@@ -380,11 +369,10 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_outward_2 = 0.0 if type2_rods_coplanar_outward_outward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_outward_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_outward_inward = (
                         (
@@ -394,17 +382,14 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_inward_2 = 0.0 if type2_rods_coplanar_outward_inward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_outward_inward_2 = 3.0
             else:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_inward_outward_outward_2 = 3.0
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_inward_outward_inward_2 = 3.0
             if axis_a2_inward >= lowest_a2 and axis_a2_inward <= highest_a2:
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
                     type2_rods_coplanar_inward_outward = (
                         (
@@ -414,11 +399,10 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_outward_2 = 0.0 if type2_rods_coplanar_inward_outward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_outward_2 = 3.0
+                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_inward >= lowest_a3 and axis_a3_inward <= highest_a3:
                     type2_rods_coplanar_inward_inward = (
                         (
@@ -428,24 +412,16 @@ def unrolled(k: Constants) -> Unrolled:
                         )
                         *assembly_sign_by_constant_part
                     )
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_inward_2 = 0.0 if type2_rods_coplanar_inward_inward >= min_type2_margin else 3.0
                 else:
-                    # rods_coplanar: the other assembly mode, or too near to losing the plate
                     refusal_inward_inward_inward_2 = 3.0
             else:
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_inward_inward_outward_2 = 3.0
-                # rods_coplanar: the other assembly mode, or too near to losing the plate
                 refusal_inward_inward_inward_2 = 3.0
         else:
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_outward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_outward_inward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_inward_outward_2 = 3.0
-            # rods_coplanar: the other assembly mode, or too near to losing the plate
             refusal_inward_inward_inward_2 = 3.0
         return (
             (

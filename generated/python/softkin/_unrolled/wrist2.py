@@ -52,19 +52,16 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        # a: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_a > 1e-11:
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a_positive = r13_of_a
             direction_y_a_positive = r23_of_a
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a_negative = -r13_of_a
             direction_y_a_negative = -r23_of_a
         else:
             free_a = (ref_a - offset_a)*DEGREE
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a_positive = cos(free_a)
             direction_y_a_positive = sin(free_a)
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
@@ -115,19 +112,16 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        # a: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_a > 1e-11:
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a_positive = r13_of_a
             direction_y_a_positive = r23_of_a
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a_negative = -r13_of_a
             direction_y_a_negative = -r23_of_a
         else:
             free_a = (ref_a - offset_a)*DEGREE
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a_positive = cos(free_a)
             direction_y_a_positive = sin(free_a)
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
         axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive)*RADIAN  # A: its turn
@@ -151,13 +145,13 @@ def unrolled(k: Constants) -> Unrolled:
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
+        # a: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_a > 1e-11:
-            # a: polar angle in the r13 and r23 equations; its reference where it is free
             direction_x_a = r13_of_a*sigma_roll
             direction_y_a = r23_of_a*sigma_roll
         else:
             free_a = (ref_a - offset_a)*DEGREE
-            direction_x_a = cos(free_a)  # a: polar angle in the r13 and r23 equations; its reference where it is free
+            direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
         axis_a = offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN  # A: its turn
         a_radius_of_b = radius_a*sigma_roll
