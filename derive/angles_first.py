@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.directions import Pair, products
-from derive.passes import assemble
+from derive.passes import assemble, fresh, names_of
 from derive.program import DEGREE, Atan2, Let, Program, Select, Statement, reads, real, rewritten, symbols_of
 from derive.turnless import turnless
 
@@ -30,15 +30,16 @@ _Signs = Mapping[sp.Symbol, frozenset[sp.Symbol]]
 def angles_first(program: Program, constants: frozenset[str]) -> Program:
     """The program with sums of angles before their sines and cosines, where nothing else reads those of the angles."""
     values, signs = {let.name: let.value for let in program.lets()}, _signs(program)
-    candidates = {pair: _angle(pair, values, constants, signs) for pair in _turnless_directions(program)}
+    names = _turnless_directions(program)
+    candidates = {pair: _angle(pair, values, constants, signs) for pair in names}
     angles = {pair: angle for pair, angle in candidates.items() if angle is not None}
     sums = {s.pair: s for s in _sums(values, angles)}
     while True:
         wanted = {pair: {name for s in sums.values() if pair in s.parts for name in s.pair} for pair in angles}
-        known = {pair for pair, names in wanted.items() if _readers(program, pair) <= names}
+        known = {pair for pair, readers in wanted.items() if _readers(program, pair) <= readers}
         fewer = {pair: s for pair, s in sums.items() if known.issuperset(s.parts)}
         if fewer == sums:
-            return _with_angles(program, {p: a for p, a in angles.items() if p in known}, list(sums.values()))
+            return _with_angles(program, {p: a for p, a in angles.items() if p in known}, names, list(sums.values()))
         sums = fewer
 
 
@@ -52,14 +53,24 @@ class _Sum:
     is_opposite: bool
 
 
-def _turnless_directions(program: Program) -> list[Pair]:
-    """The names whose arc tangent is taken, and may be a turn more or less."""
+def _turnless_directions(program: Program) -> dict[Pair, sp.Symbol]:
+    """The names whose arc tangent is taken, and may be a turn more or less, with the name of the angle."""
     nodes = (node for let in program.lets() for node in sp.preorder_traversal(let.value) if isinstance(node, Atan2))
     pairs = [node.args for node in dict.fromkeys(nodes) if all(a.is_Symbol for a in node.args)]
-    names = {Atan2(*pair): _name_of(pair) for pair in pairs}
-    named = [rewritten(s, lambda e: e.xreplace(names)) for s in program.body]
-    free = turnless(replace(program, body=(*(Let(name, angle) for angle, name in names.items()), *named)))
-    return [(s, c) for s, c in pairs if _name_of((s, c)) in free]
+    names, taken = {let.value: let.name for let in program.lets() if isinstance(let.value, Atan2)}, names_of(program)
+    for pair in pairs:
+        if Atan2(*pair) not in names:
+            names[Atan2(*pair)] = fresh(_name_of(pair), taken)
+            taken.add(names[Atan2(*pair)].name)
+    free = turnless(replace(program, body=_read_by_name(program, names)))
+    return {(s, c): names[Atan2(s, c)] for s, c in pairs if names[Atan2(s, c)] in free}
+
+
+def _read_by_name(program: Program, names: Mapping[sp.Basic, sp.Basic]) -> tuple[Statement, ...]:
+    """The statements with angles under names, which are bound first."""
+    bound = [s for s in program.body if not (isinstance(s, Let) and names.get(s.value) == s.name)]
+    lets = [Let(real(str(name)), angle) for angle, name in names.items() if isinstance(angle, Atan2)]
+    return (*lets, *(rewritten(s, lambda e: e.xreplace(dict(names))) for s in bound))
 
 
 def _name_of(pair: Pair) -> sp.Symbol:
@@ -136,23 +147,27 @@ def _readers(program: Program, pair: Pair) -> set[sp.Symbol | None]:
     return found | {None for o in program.outputs if symbols_of(o.value) & set(pair)}
 
 
-def _with_angles(program: Program, angles: Mapping[Pair, sp.Expr], sums: Sequence[_Sum]) -> Program:
-    names = {pair: _name_of(pair) for pair in angles}
-    taken: dict[sp.Expr, sp.Symbol] = {}
-    for angle in angles.values():
-        for part in sorted(angle.atoms(Atan2), key=str):
-            taken.setdefault(part, real(f"angle_of_{part.args[1].name.removeprefix('cos_')}") if part.args[1].is_Symbol else part)
-    lets: list[Statement] = [Let(name, part) for part, name in taken.items() if name != part]
-    lets += [Let(names[pair], angle.xreplace(taken)) for pair, angle in angles.items()]
-    replaced: dict[sp.Symbol, sp.Expr] = {}
+def _with_angles(
+    program: Program, angles: Mapping[Pair, sp.Expr], names: Mapping[Pair, sp.Symbol], sums: Sequence[_Sum]
+) -> Program:
+    """The program with these angles under names, and the sines of their sums."""
+    taken = names_of(program) | {name.name for name in names.values()}
+    parts: dict[sp.Basic, sp.Symbol] = {}
+    for part in (p for angle in angles.values() for p in sorted(angle.atoms(Atan2), key=str)):
+        if part not in parts and part.args[1].is_Symbol:
+            parts[part] = fresh(real(f"angle_of_{part.args[1].name.removeprefix('cos_')}"), taken)
+            taken.add(parts[part].name)
+    lets: list[Statement] = [Let(name, sp.sympify(part)) for part, name in parts.items()]
+    lets += [Let(names[pair], angle.xreplace(parts)) for pair, angle in angles.items()]
+    sines: dict[sp.Symbol, sp.Expr] = {}
     for s in sums:
-        total, sign = real(f"angle_{s.pair[1].name.removeprefix('cos_')}"), -1 if s.is_opposite else 1
+        total, sign = fresh(_name_of(s.pair), taken), -1 if s.is_opposite else 1
         lets.append(Let(total, sp.Add(*[sense * names[part] for sense, part in zip(s.senses, s.parts, strict=True)])))
-        replaced |= {s.pair[0]: sign * sp.sin(total), s.pair[1]: sign * sp.cos(total)}
-    known = {Atan2(*pair): name for pair, name in names.items()}
+        sines |= {s.pair[0]: sign * sp.sin(total), s.pair[1]: sign * sp.cos(total)}
+    known = {Atan2(*pair): names[pair] for pair in angles}
     for statement in program.body:
-        if isinstance(statement, Let) and statement.name in replaced:
-            lets.append(Let(statement.name, replaced[statement.name], statement.note))
-        elif not (isinstance(statement, Let) and statement.value in known and statement.name == known[statement.value]):
+        if isinstance(statement, Let) and statement.name in sines:
+            lets.append(replace(statement, value=sines[statement.name]))
+        elif not (isinstance(statement, Let) and known.get(statement.value) == statement.name):
             lets.append(rewritten(statement, lambda e: e.xreplace(known)))
     return assemble(program.name, lets, program.outputs)

@@ -8,13 +8,13 @@ Both also hold for what is made of a direction: a direction that it turns, or th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations, product
 
 import sympy as sp
 
-from derive.passes import assemble, is_read_once
+from derive.passes import assemble, fresh, is_read_once, names_of
 from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Root, Select, reads, real, rewritten, symbols_of
 
 Pair = tuple[sp.Symbol, sp.Symbol]
@@ -58,7 +58,9 @@ def _added(program: Program) -> Program:
 
 
 def _with_sums(program: Program, sums: Mapping[Pair, _Amount]) -> Program:
-    angles = {p: _angle_name(p, whole) for whole, amount in sums.items() for _, p in amount.terms if p not in sums}
+    taken = names_of(program)
+    parts = {p: whole for whole, amount in sums.items() for _, p in amount.terms if p not in sums}
+    angles = {p: fresh(_angle_name(p, whole), taken) for p, whole in parts.items()}
     values: dict[sp.Basic, sp.Basic] = {Atan2(*pair): name for pair, name in angles.items()}
     for pair, amount in sums.items():
         total = sp.Add(*[sign * values.get(Atan2(*p), Atan2(*p)) for sign, p in amount.terms])
@@ -67,9 +69,9 @@ def _with_sums(program: Program, sums: Mapping[Pair, _Amount]) -> Program:
     body = []
     for s in program.body:
         changed = rewritten(s, lambda e: e.xreplace(values))
-        taken = _direction_of(s) if isinstance(s, Let) else None
-        if isinstance(changed, Let) and taken is not None and taken in sums:
-            changed = replace(changed, note=_joined(notes[taken[1]], changed.note))
+        whole = _direction_of(s) if isinstance(s, Let) else None
+        if isinstance(changed, Let) and whole is not None and whole in sums:
+            changed = replace(changed, note=_joined(notes[whole[1]], changed.note))
         body.append(changed)
     lets = [Let(name, Atan2(*pair)) for pair, name in angles.items()]
     return assemble(program.name, (*lets, *body), program.outputs) if sums else program
@@ -193,7 +195,7 @@ def _without_division(
     program: Program, names: frozenset[sp.Symbol], length: sp.Symbol, graded: frozenset[sp.Symbol]
 ) -> Program:
     """The program with the names, called what they then are, in proportion to what they were."""
-    called = {name: _called(name) for name in sorted(names, key=str)}
+    called = {name: _called(name, names_of(program)) for name in sorted(names, key=str)}
     body = []
     for s in program.body:
         if isinstance(s, Let) and s.name in graded:
@@ -222,10 +224,10 @@ def _joined(*notes: str) -> str:
     return "; ".join(note for note in notes if note)
 
 
-def _called(name: sp.Symbol) -> sp.Symbol:
+def _called(name: sp.Symbol, taken: Collection[str]) -> sp.Symbol:
     """`direction_x_q4` for `cos_q4`, `direction_y_q4` for `sin_q4`."""
     word, _, rest = name.name.partition("_")
-    return real(f"direction_{ {'cos': 'x', 'sin': 'y'}[word] }_{rest}") if word in ("cos", "sin") else name
+    return fresh(real(f"direction_{ {'cos': 'x', 'sin': 'y'}[word] }_{rest}"), taken) if word in ("cos", "sin") else name
 
 
 def _times(value: sp.Expr, length: sp.Symbol) -> sp.Expr:

@@ -7,7 +7,7 @@ hoist   Let(scale_a2, 2*link_length_1*link_length_2)         →  computed once,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
@@ -174,7 +174,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
                 body.append(replace(s, value=value))
                 continue
             if value not in by_value:
-                name = _fresh(s.name, known | local)
+                name = fresh(s.name, known | local)
                 known.add(name.name)
                 by_value[value] = name
                 hoisted.append(Let(name, value, s.note))
@@ -212,9 +212,15 @@ def _is_constant(let: Let, program: Program, constants: set[str]) -> bool:
     return True
 
 
-def _fresh(name: sp.Symbol, taken: set[str]) -> sp.Symbol:
+def fresh(name: sp.Symbol, taken: Collection[str]) -> sp.Symbol:
+    """The name, with a number behind it where it is taken."""
     number, proposal = 1, name.name
     while proposal in taken:
         number += 1
         proposal = f"{name.name}_{number}"
     return real(proposal)
+
+
+def names_of(program: Program) -> set[str]:
+    """The names that a program reads or binds."""
+    return {s.name for s in (*program.inputs, *program.bound())}

@@ -25,8 +25,8 @@ DEGREE = sp.Symbol("DEGREE", positive=True)
 # The numerical constants of the product. Each stands here once and nowhere else.
 FREE_ANGLE = sp.Float("1e-11")
 """A scaled measure at or below this leaves its angle free, and a branch byte reads 3."""
-KNOWN_ANGLE = sp.Float("1e-2")
-"""A scaled measure above this gives its angle to 1e-14: nothing needs to move it to where later steps can reach."""
+KNOWN_ANGLE = sp.Float("0.1")
+"""A scaled measure above this gives its angle to 1e-15: nothing needs to move it to where later steps can reach."""
 BOUNDARY = sp.Float("1e-12")
 """A normalised radicand negative by at most this is zero: the boundary belongs to the workspace."""
 ROUNDING = sp.Float("1e-12")

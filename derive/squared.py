@@ -14,7 +14,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.passes import assemble
+from derive.passes import assemble, fresh, names_of
 from derive.program import FREE_ANGLE, Let, Output, Program, Root, Statement, reads, real, rewritten, symbols_of
 
 
@@ -28,9 +28,7 @@ def without_roots(program: Program) -> Program:
 
 def _without_root(program: Program, length: sp.Symbol) -> Program | None:
     """The program with the square of a length; None where something else is made of it."""
-    square = real(f"{length.name}_squared")
-    if square in program.bound():
-        return None
+    square = fresh(real(f"{length.name}_squared"), names_of(program))
 
     def changed(value: sp.Basic) -> sp.Basic:
         return _in_squares(value, length, square)

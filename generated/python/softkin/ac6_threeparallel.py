@@ -679,7 +679,7 @@ class Ac6ThreeParallel(Mechanism):
             sin_q6_before_q6_of_q3 = sin(free_a6)
         wrist_z = z - d6*r33
         # moved to where the rest can be reached
-        if radius_q6 > 0.01:
+        if radius_q6 > 0.1:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:

@@ -379,7 +379,7 @@ class ArrayPrograms(Programs):
         cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
         sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
         cos_q6, sin_q6 = elsewhere(
-            radius_q6 > 0.01,
+            radius_q6 > 0.1,
             (cos_q6, sin_q6),
             elsewhere_cos_q6,
             (
@@ -924,7 +924,7 @@ class ArrayPrograms(Programs):
         cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
         sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
         cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up = elsewhere(
-            radius_q6_left > 0.01,
+            radius_q6_left > 0.1,
             (cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up),
             elsewhere_cos_q6_left_down,
             (
@@ -1454,7 +1454,7 @@ class ArrayPrograms(Programs):
         cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
         sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
         cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up = elsewhere(
-            radius_q6_right > 0.01,
+            radius_q6_right > 0.1,
             (cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up),
             elsewhere_cos_q6_right_down,
             (

@@ -97,7 +97,7 @@ def branch(
         cos_q6_before_q6_of_q3 = cos(free_a6)
         sin_q6_before_q6_of_q3 = sin(free_a6)
     wrist_z = z - d6*r33
-    if radius_q6 > 0.01:
+    if radius_q6 > 0.1:
         cos_q6 = cos_q6_before_q6_of_q3
         sin_q6 = sin_q6_before_q6_of_q3
     else:

@@ -134,7 +134,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         wrist_z = z - d6*r33
         # moved to where the rest can be reached
-        if radius_q6 > 0.01:
+        if radius_q6 > 0.1:
             cos_q6_down = cos_q6_before_q6_of_q3_down
             sin_q6_down = sin_q6_before_q6_of_q3_down
             cos_q6_up = cos_q6_before_q6_of_q3_up
@@ -514,7 +514,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         # moved to where the rest can be reached
-        if radius_q6 > 0.01:
+        if radius_q6 > 0.1:
             cos_q6_down = cos_q6_before_q6_of_q3_down
             sin_q6_down = sin_q6_before_q6_of_q3_down
             cos_q6_up = cos_q6_before_q6_of_q3_up
@@ -986,7 +986,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         wrist_z = z - d6*r33
         # moved to where the rest can be reached
-        if radius_q6 > 0.01:
+        if radius_q6 > 0.1:
             cos_q6_down = cos_q6_before_q6_of_q3_down
             sin_q6_down = sin_q6_before_q6_of_q3_down
             cos_q6_up = cos_q6_before_q6_of_q3_up
@@ -1280,7 +1280,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
         # moved to where the rest can be reached
-        if radius_q6 > 0.01:
+        if radius_q6 > 0.1:
             cos_q6_down = cos_q6_before_q6_of_q3_down
             sin_q6_down = sin_q6_before_q6_of_q3_down
             cos_q6_up = cos_q6_before_q6_of_q3_up
@@ -1662,7 +1662,7 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3 = sin(free_a6)
         wrist_z = z - d6*r33
         # moved to where the rest can be reached
-        if radius_q6 > 0.01:
+        if radius_q6 > 0.1:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:
