@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from derive.directions import Pair, products
+from derive.directions import Pair, lengths_of, products
 from derive.passes import assemble, fresh, names_of
 from derive.program import DEGREE, Atan2, Let, Program, Select, Statement, reads, real, rewritten, symbols_of
 from derive.turnless import turnless
@@ -29,9 +29,10 @@ _Signs = Mapping[sp.Symbol, frozenset[sp.Symbol]]
 
 def angles_first(program: Program, constants: frozenset[str]) -> Program:
     """The program with sums of angles before their sines and cosines, where nothing else reads those of the angles."""
-    values, signs = {let.name: let.value for let in program.lets()}, _signs(program)
+    values = {let.name: let.value for let in program.lets()}
+    context = _Known(values, constants, _signs(program), lengths_of(program))
     names = _turnless_directions(program)
-    candidates = {pair: _angle(pair, values, constants, signs) for pair in names}
+    candidates = {pair: _angle(pair, context) for pair in names}
     angles = {pair: angle for pair, angle in candidates.items() if angle is not None}
     sums = {s.pair: s for s in _sums(values, angles)}
     while True:
@@ -41,6 +42,16 @@ def angles_first(program: Program, constants: frozenset[str]) -> Program:
         if fewer == sums:
             return _with_angles(program, {p: a for p, a in angles.items() if p in known}, names, list(sums.values()))
         sums = fewer
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What is known of the names of a program."""
+
+    values: _Values
+    constants: frozenset[str]
+    signs: _Signs
+    lengths: frozenset[sp.Symbol]
 
 
 @dataclass(frozen=True)
@@ -78,25 +89,26 @@ def _name_of(pair: Pair) -> sp.Symbol:
     return real(f"angle_{pair[1].name.removeprefix('cos_').removeprefix('direction_x_')}")
 
 
-def _angle(pair: Pair, values: _Values, constants: frozenset[str], signs: _Signs) -> sp.Expr | None:
+def _angle(pair: Pair, known: _Known) -> sp.Expr | None:
     """The angle of a direction that is another one turned: where a condition holds, or always."""
-    sine, cosine = (values.get(name, name) for name in pair)
+    sine, cosine = (known.values.get(name, name) for name in pair)
     if not (isinstance(sine, Select) and isinstance(cosine, Select)):
-        return _turned(sine, cosine, constants, signs)
+        return _turned(sine, cosine, known)
     (condition, across, sine_else), (same, along, cosine_else) = sine.args, cosine.args
     if condition != same or not isinstance(sine_else, sp.sin) or cosine_else != sp.cos(sine_else.args[0]):
         return None
-    across, along = (sp.Mul(*[f for f in sp.Mul.make_args(v) if f.as_base_exp()[1] > 0]) for v in (across, along))
-    first = _turned(values.get(across, across), values.get(along, along), constants, signs)
+    for length in [1 / f for f in sp.Mul.make_args(along) if 1 / f in known.lengths]:
+        across, along = across * length, along * length  # a divisor that one of the two has alone stays, and nothing fits
+    first = _turned(known.values.get(across, across), known.values.get(along, along), known)
     return None if first is None else Select(condition, first, sine_else.args[0])
 
 
-def _turned(sine: sp.Expr, cosine: sp.Expr, constants: frozenset[str], signs: _Signs) -> sp.Expr | None:
+def _turned(sine: sp.Expr, cosine: sp.Expr, known: _Known) -> sp.Expr | None:
     """The angle of one direction turned by another, or by an angle of the machine."""
-    found = sorted(products(sine, cosine), key=lambda product: sum(_is_flipped(p, signs) for _, p in product[1:]))
+    found = sorted(products(sine, cosine), key=lambda product: sum(_is_flipped(p, known.signs) for _, p in product[1:]))
     for is_opposite, (sense1, first), (sense2, second) in found:
         return sense1 * Atan2(*first) + sense2 * Atan2(*second) + (180 * DEGREE if is_opposite else 0)
-    moving = sorted((s for s in symbols_of(cosine) if s.name not in constants), key=str)
+    moving = sorted((s for s in symbols_of(cosine) if s.name not in known.constants), key=str)
     for x, y in (moving, moving[::-1]) if len(moving) == 2 else ():
         a, b = sine.coeff(y), sine.coeff(x)
         if sp.expand(cosine - a * x + b * y) == 0 and sp.expand(sine - b * x - a * y) == 0:

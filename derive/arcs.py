@@ -4,7 +4,7 @@ Where a partial step's measure vanishes its angle u is free, and where the measu
 A later two-root step needs |e| <= h; there e = level + along cos u + across sin u (what else e holds of u, its second harmonic,
 vanishes with the measure, and is taken as constant). So cos(u - centre) lies between two bounds: on each side of the centre an
 arc. u moves to the nearest point of the arc on its side, where the motion that this costs, measure times arc, is rounding.
-Nothing of this is done where the measure is large: u is known there, and wrong by less than the boundary is wide.
+Where e is within its bound, or far beyond it though u is known, u stays, and nothing of this is looked at.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from derive.problem import Measure, Slope
 from derive.program import (
     FREE_ANGLE,
     KNOWN_ANGLE,
+    OUT_OF_REACH,
     ROUNDING,
     Atan2,
     Let,
@@ -51,6 +52,8 @@ class _Condition:
     size: sp.Expr
     value: sp.Expr
     parts: tuple[_Part, ...]
+    chain: tuple[Let, ...]
+    """How the parts follow from the angle, step by step."""
 
 
 def within_reach(
@@ -100,7 +103,18 @@ def _condition(statements: Sequence[Statement], measure: Measure, slope: Slope) 
     gone = _vanishing(statements, measure)
     if all(p.along.xreplace(gone) == 0 and p.across.xreplace(gone) == 0 for p in parts):
         return None  # where the angle is free it no longer moves them
-    return _Condition(f"{angle.name}_of_{slope.sigma.name.removeprefix('sigma_')}", size, value, parts)
+    chain = tuple(_chain(statements, moved, dependent))
+    return _Condition(f"{angle.name}_of_{slope.sigma.name.removeprefix('sigma_')}", size, value, parts, chain)
+
+
+def _chain(statements: Sequence[Statement], names: Sequence[sp.Symbol], dependent: Mapping[sp.Symbol, sp.Expr]) -> list[Let]:
+    """The statements by which names depend on the angle."""
+    needed, found = set(names), list[Let]()
+    for s in reversed(statements):
+        if isinstance(s, Let) and s.name in needed & dependent.keys():
+            needed |= s.value.free_symbols
+            found.insert(0, s)
+    return found
 
 
 def _vanishing(statements: Sequence[Statement], measure: Measure) -> dict[sp.Symbol, sp.Expr]:
@@ -159,7 +173,7 @@ def _motion(measure: Measure, condition: _Condition) -> tuple[Let, ...]:
     centre, before, side, moved = (real(f"{name}_{word}") for name in ("centre", "angle", "side", "moved"))
     turns = sp.Gt(swing, ROUNDING * size)
     one = sp.Integer(1)
-    lets, total, slopes = _parts(condition, cos_u, sin_u)
+    lets, total, slopes = _parts(condition)
     return (
         *lets,
         Let(value, total, f"a later step needs this of {measure.angle.name}: no larger in size than"),
@@ -180,23 +194,20 @@ def _motion(measure: Measure, condition: _Condition) -> tuple[Let, ...]:
     )
 
 
-def _parts(
-    condition: _Condition, cos_u: sp.Symbol, sin_u: sp.Symbol
-) -> tuple[tuple[Let, ...], sp.Expr, tuple[sp.Expr, sp.Expr]]:
+def _parts(condition: _Condition) -> tuple[tuple[Let, ...], sp.Expr, tuple[sp.Expr, sp.Expr]]:
     """The parts under names, e at the angle, and the coefficients of its first harmonic."""
-    lets: list[Let] = []
-    here: dict[sp.Symbol, sp.Expr] = {}
+    before = {let.name: real(f"{let.name.name}_before_{condition.word}") for let in condition.chain}
+    lets = [Let(before[let.name], let.value.xreplace(before)) for let in condition.chain]
     fixed: dict[sp.Symbol, sp.Expr] = {}
     for part in condition.parts:
         names = {w: real(f"{part.name.name}_{w}") for w in ("fixed", "along", "across")}
         lets += [Let(n, getattr(part, w)) for w, n in names.items()]
-        lets.append(Let(real(f"{part.name.name}_here"), names["fixed"] + names["along"] * cos_u + names["across"] * sin_u))
-        here[part.name], fixed[part.name] = lets[-1].name, names["fixed"]
+        fixed[part.name] = names["fixed"]
     slopes = [
         sp.Add(*[sp.diff(condition.value, p.name).xreplace(fixed) * real(f"{p.name.name}_{w}") for p in condition.parts])
         for w in ("along", "across")
     ]
-    return tuple(lets), condition.value.xreplace(here), (slopes[0], slopes[1])
+    return tuple(lets), condition.value.xreplace(before), (slopes[0], slopes[1])
 
 
 def _cosine_of(value: sp.Expr) -> sp.Expr:
@@ -211,14 +222,19 @@ def _bound(measure: Measure, condition: _Condition, names: dict[sp.Symbol, sp.Sy
     names_after = [real(f"{f(measure.angle).name}_after_{word}") for f in (cosine, sine)]
     share = measure.value / measure.scale
     chord = Root(sp.Add(*[(a - b) ** 2 for a, b in zip(names_after, before, strict=True)]))
-    known = sp.Gt(share, KNOWN_ANGLE)
+    beyond = sp.And(sp.Gt(share, KNOWN_ANGLE), sp.Gt(sp.Abs(value), (1 + OUT_OF_REACH) * size))
+    reached = sp.Le(sp.Abs(value), size)
     dear = sp.And(sp.Gt(share, FREE_ANGLE), sp.Gt(costs, ROUNDING))
     return [
         *(Let(n, v) for n, v in zip(names_after, after, strict=True)),
         Let(costs, share * chord, "what the motion changes of the pose"),
-        Let(stays, Select(sp.Le(sp.Abs(value), size), sp.Integer(1), Select(dear, sp.Integer(1), sp.Integer(0)))),
+        Let(stays, Select(dear, sp.Integer(1), sp.Integer(0))),
         *(
-            Let(f(measure.angle), Select(known, b, Select(sp.Gt(stays, 0), b, a)), "moved to where the rest can be reached")
+            Let(
+                f(measure.angle),
+                Select(reached, b, Select(beyond, b, Select(sp.Gt(stays, 0), b, a))),
+                "kept where the rest can be reached",
+            )
             for f, a, b in zip((cosine, sine), names_after, before, strict=True)
         ),
     ]

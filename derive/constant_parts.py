@@ -29,7 +29,6 @@ from derive.program import (
 
 _WORDS = {
     FREE_ANGLE: "free_angle",
-    FREE_ANGLE**2: "free_angle_squared",
     ROUNDING: "rounding",
     SHORTEST_LINK: "shortest_link",
     PLANE: "plane",

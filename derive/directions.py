@@ -17,6 +17,7 @@ import sympy as sp
 from derive.passes import assemble, fresh, is_read_once, names_of
 from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Root, Select, reads, real, rewritten, symbols_of
 
+_AXES = {"cos": "x", "sin": "y"}
 Pair = tuple[sp.Symbol, sp.Symbol]
 """What sine and cosine of an angle are, or are proportional to."""
 
@@ -143,7 +144,7 @@ def _unscaled(program: Program) -> Program:
 def _divided(program: Program) -> tuple[tuple[frozenset[sp.Symbol], sp.Symbol], ...]:
     """The names that are quotients by one length, on the first side of a choice or always."""
     found: dict[tuple[sp.Basic, sp.Symbol], list[sp.Symbol]] = {}
-    lengths = {let.name for let in program.lets() if _is_length(let.value, program)}
+    lengths = lengths_of(program)
     for let in program.lets():
         condition, value = (let.value.args[0], let.value.args[1]) if isinstance(let.value, Select) else (sp.true, let.value)
         for factor in sp.Mul.make_args(value):
@@ -152,12 +153,11 @@ def _divided(program: Program) -> tuple[tuple[frozenset[sp.Symbol], sp.Symbol], 
     return tuple((frozenset(names), length) for (_, length), names in found.items())
 
 
-def _is_length(value: sp.Expr, program: Program) -> bool:
-    """Whether a value is the length of something, or 1 where that is none."""
-    if not (isinstance(value, Select) and value.args[2] == 1):
-        return False
+def lengths_of(program: Program) -> frozenset[sp.Symbol]:
+    """The names that are the length of something, or 1 where that is none: never negative, and no divisor that is zero."""
     roots = {let.name for let in program.lets() if isinstance(let.value, Root)}
-    return isinstance(value.args[1], Root) or value.args[1] in roots
+    choices = [let for let in program.lets() if isinstance(let.value, Select) and let.value.args[2] == 1]
+    return frozenset(c.name for c in choices if isinstance(c.value.args[1], Root) or c.value.args[1] in roots)
 
 
 def _graded(program: Program, names: frozenset[sp.Symbol]) -> frozenset[sp.Symbol] | None:
@@ -166,7 +166,7 @@ def _graded(program: Program, names: frozenset[sp.Symbol]) -> frozenset[sp.Symbo
     for statement in program.body:
         if not reads(statement) & graded:
             continue
-        if not isinstance(statement, Let):
+        if not isinstance(statement, Let) or statement.name in names:
             return None
         degree = _degree(statement.value, graded)
         if degree is None:
@@ -178,7 +178,7 @@ def _graded(program: Program, names: frozenset[sp.Symbol]) -> frozenset[sp.Symbo
 
 def _degree(value: sp.Expr, graded: set[sp.Symbol]) -> int | None:
     """1 where a value grows in proportion, 0 where it does not change."""
-    plain = value.replace(lambda e: isinstance(e, Atan2) and _is_proportional(e.args, graded), lambda _: sp.Integer(0))
+    plain = value.replace(lambda e: isinstance(e, Atan2) and _is_proportional(e.args, graded), lambda _: sp.Dummy())
     if not plain.free_symbols & graded:
         return 0
     sides = plain.args[1:] if isinstance(plain, Select) and not plain.args[0].free_symbols & graded else (plain,)
@@ -195,7 +195,7 @@ def _without_division(
     program: Program, names: frozenset[sp.Symbol], length: sp.Symbol, graded: frozenset[sp.Symbol]
 ) -> Program:
     """The program with the names, called what they then are, in proportion to what they were."""
-    called = {name: _called(name, names_of(program)) for name in sorted(names, key=str)}
+    called = {name: _called(name, names_of(program)) for name in sorted(graded, key=str)}
     body = []
     for s in program.body:
         if isinstance(s, Let) and s.name in graded:
@@ -225,9 +225,11 @@ def _joined(*notes: str) -> str:
 
 
 def _called(name: sp.Symbol, taken: Collection[str]) -> sp.Symbol:
-    """`direction_x_q4` for `cos_q4`, `direction_y_q4` for `sin_q4`."""
+    """`direction_x_q4` for `cos_q4`, `direction_y_q4` for `sin_q4`, `scaled_r21` for `r21`."""
     word, _, rest = name.name.partition("_")
-    return fresh(real(f"direction_{ {'cos': 'x', 'sin': 'y'}[word] }_{rest}"), taken) if word in ("cos", "sin") else name
+    if word in ("direction", "scaled"):
+        return name
+    return fresh(real(f"direction_{_AXES[word]}_{rest}" if word in _AXES else f"scaled_{name.name}"), taken)
 
 
 def _times(value: sp.Expr, length: sp.Symbol) -> sp.Expr:

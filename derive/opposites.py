@@ -3,7 +3,7 @@
     y = -a * u - b * v,  x = -a * w - b * t          minus_y = a * u + b * v,  minus_x = a * w + b * t
     axis = shift + atan2(y, x)/DEGREE           →    axis = (shift + 180) + atan2(minus_y, minus_x)/DEGREE
 
-It serves where the turn of an axis does not matter, or is chosen afterwards.
+Its turn is chosen afterwards.
 """
 
 from __future__ import annotations
@@ -36,9 +36,7 @@ def without_minus(program: Program) -> Program:
 
 
 def _axis_angles(program: Program) -> list[Atan2]:
-    """The angles of directions under names that axes are taken of: shift + atan2(y, x)/DEGREE, perhaps in its turn."""
-    found = []
-    for let in program.lets():
-        value = let.value.args[0] if isinstance(let.value, NearestPeriod) else let.value
-        found += [t * DEGREE for t in sp.Add.make_args(value) if isinstance(t * DEGREE, Atan2)]
+    """The angles of directions under names that axes with a turn of their own are taken of."""
+    turns = [let.value.args[0] for let in program.lets() if isinstance(let.value, NearestPeriod)]
+    found = [t * DEGREE for value in turns for t in sp.Add.make_args(value) if isinstance(t * DEGREE, Atan2)]
     return [angle for angle in dict.fromkeys(found) if all(a.is_Symbol for a in angle.args)]

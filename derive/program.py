@@ -26,7 +26,9 @@ DEGREE = sp.Symbol("DEGREE", positive=True)
 FREE_ANGLE = sp.Float("1e-11")
 """A scaled measure at or below this leaves its angle free, and a branch byte reads 3."""
 KNOWN_ANGLE = sp.Float("0.1")
-"""A scaled measure above this gives its angle to 1e-15: nothing needs to move it to where later steps can reach."""
+"""A scaled measure above this gives its angle to 1e-15, so that hardly anything can be made of moving it."""
+OUT_OF_REACH = sp.Float("1e-9")
+"""What is beyond its bound by more than this share is not reached by moving an angle that is known."""
 BOUNDARY = sp.Float("1e-12")
 """A normalised radicand negative by at most this is zero: the boundary belongs to the workspace."""
 ROUNDING = sp.Float("1e-12")

@@ -39,7 +39,7 @@ class _Turned:
         return statement
 
     def _undone(self, value: sp.Expr) -> sp.Expr:
-        if value.free_symbols & self.names != self.names or not value.is_polynomial(*self.names):
+        if value.free_symbols & self.names != self.names or not value.is_polynomial(*self.names, *self.before):
             return value
         polynomial = sp.Poly(value.xreplace(dict(self.values)), *self.before)
         if polynomial.total_degree() != 1:
@@ -79,11 +79,11 @@ def _turns(lets: Iterable[Let]) -> Iterable[_Turned]:
 
 def _without_signs(program: Program) -> Program:
     """Names that are read only as their negatives are bound as these."""
-    body: list[Statement] = list(program.body)
     values = {let.name: let for let in program.lets()}
     for let in program.lets():
         source = values.get(-let.value) if (-let.value).is_Symbol else None
         if source is not None and is_read_once(program, source.name):
-            note = let.note or source.note
-            body = [Let(let.name, sp.expand(-source.value), note) if s == let else s for s in body if s != source]
-    return assemble(program.name, body, program.outputs)
+            changed = Let(let.name, sp.expand(-source.value), let.note or source.note)
+            body = [changed if s == let else s for s in program.body if s != source]
+            return _without_signs(assemble(program.name, body, program.outputs))
+    return program

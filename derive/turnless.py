@@ -28,20 +28,24 @@ def _counted(statement: Statement, angles: set[sp.Symbol]) -> set[sp.Symbol]:
     value = statement.value
     if isinstance(value, NearestPeriod):
         direction, near = value.args
-        return symbols_of(near) | symbols_of(_without_angles(direction, DEGREE))
+        return symbols_of(near) | _beside_angles(direction, DEGREE)
     if statement.name in angles:
-        sides = value.args[1:] if isinstance(value, Select) else (value,)
-        conditions = symbols_of(value.args[0]) if isinstance(value, Select) else set()
-        return conditions.union(*(symbols_of(_without_angles(side, sp.Integer(1))) for side in sides))
-    return symbols_of(_without_sines(value))
+        if isinstance(value, Select):
+            return symbols_of(value.args[0]).union(*(_beside_angles(side) for side in value.args[1:]))
+        return _beside_angles(value)
+    return _beside_sines(value)
 
 
-def _without_angles(value: sp.Expr, unit: sp.Expr) -> sp.Expr:
-    """A sum without the terms that are an angle or its negative, in a unit, and without sines of angles."""
-    kept = [t for t in sp.Add.make_args(sp.expand(value)) if not (t * unit).is_Symbol and not (-t * unit).is_Symbol]
-    return _without_sines(sp.Add(*kept))
+def _beside_angles(value: sp.Expr, unit: sp.Expr = sp.S.One) -> set[sp.Symbol]:
+    """What a sum reads beside terms that are an angle or its negative, in a unit, and beside sines of such sums."""
+    terms = sp.Add.make_args(sp.expand(value))
+    return set[sp.Symbol]().union(*(_beside_sines(t) for t in terms if not (t * unit).is_Symbol and not (-t * unit).is_Symbol))
 
 
-def _without_sines(value: sp.Expr) -> sp.Expr:
-    """A value with what the arguments of its sines hold besides angles, instead of these sines."""
-    return value.replace(lambda e: isinstance(e, sp.sin | sp.cos), lambda e: _without_angles(e.args[0], sp.Integer(1)))
+def _beside_sines(value: sp.Basic) -> set[sp.Symbol]:
+    """What a value reads, of the arguments of its sines only what is no angle in them."""
+    if isinstance(value, sp.sin | sp.cos):
+        return _beside_angles(value.args[0])
+    if not value.args:
+        return symbols_of(value)
+    return set[sp.Symbol]().union(*map(_beside_sines, value.args))

@@ -101,6 +101,8 @@ class _Finder:
             self.angles.setdefault(angle, let.name)
         if isinstance(let.value, Select):
             condition, first, second = let.value.args
+            if first.is_Symbol:
+                self.known.setdefault(condition, {})[let.name] = first
             twin = self.sides.get((condition, -first))
             if twin is not None and twin[1] == second:
                 self.known.setdefault(condition, {})[let.name] = -twin[0]

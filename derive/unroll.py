@@ -13,8 +13,8 @@ that is refused disturbs no other.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import groupby, product
 
 import sympy as sp
@@ -109,15 +109,22 @@ def specialised(program: Program, values: Mapping[sp.Symbol, sp.Expr]) -> Progra
     return assemble(program.name, body, [Output(o.name, o.value.xreplace(dict(values))) for o in program.outputs])
 
 
-def principal(program: Program) -> Program:
-    """The program for inputs that are known to be good: principal values instead of periods, no look at the inputs."""
+def principal(program: Program, counted: Collection[sp.Symbol] = ()) -> Program:
+    """The program for inputs that are known to be good: no look at them, and any turn of an axis unless turns are counted."""
 
-    def plain(value: sp.Basic) -> sp.Basic:
-        return value.replace(lambda e: isinstance(e, NearestPeriod), lambda e: e.args[0])
+    def plain(statement: Statement) -> Statement:
+        if isinstance(statement, Let) and isinstance(statement.value, NearestPeriod) and statement.name not in counted:
+            return replace(statement, value=statement.value.args[0])
+        return statement
 
-    kept = [s for s in program.body if not (isinstance(s, Require) and s.otherwise is Status.BAD_INPUT)]
-    outputs = [Output(o.name, plain(o.value)) for o in program.outputs]
-    return assemble(program.name, [rewritten(s, plain) for s in kept], outputs)
+    kept = [plain(s) for s in program.body if not (isinstance(s, Require) and s.otherwise is Status.BAD_INPUT)]
+    return assemble(program.name, kept, program.outputs)
+
+
+def counted_turns(program: Program) -> frozenset[sp.Symbol]:
+    """The axes whose turns count in one branch, because another axis moves with them."""
+    turned = {let.name for let in program.lets() if isinstance(let.value, NearestPeriod)}
+    return frozenset(turned & set[sp.Symbol]().union(*map(reads, program.body)))
 
 
 @dataclass

@@ -217,8 +217,8 @@ class _Choice:
     def _is_decided(self, place: int) -> bool:
         """Whether the condition decides the choice on at least one side."""
         value = self.stretch.lets[place].value
-        if not isinstance(value, Select):
-            return False
+        if not isinstance(value, Select) or self.condition in value.args[0].args:
+            return False  # a part of a condition decides little, and what it decides may be needed on one side alone
         sides = (self.value(place, side) for side in (0, 1))
         return any(not isinstance(v, Select) or v.args[0] != value.args[0] for v in sides)
 

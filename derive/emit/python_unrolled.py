@@ -29,9 +29,20 @@ from derive.emit.reused_names import reused_names
 from derive.kinematics import Kinematics
 from derive.opposites import without_minus
 from derive.program import Let, Program, Status, real, symbols_of
-from derive.squared import without_roots
 from derive.twins import with_twins
-from derive.unroll import REFUSAL, Sign, choices, is_straight, principal, specialised, suffixed, unroll, with_limits
+from derive.unroll import (
+    REFUSAL,
+    Sign,
+    choices,
+    counted_turns,
+    is_straight,
+    principal,
+    specialised,
+    suffixed,
+    unroll,
+    with_limits,
+    without_words,
+)
 
 _ARRAY = ArrayPrinter()
 _SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, is_trusted=True)
@@ -76,8 +87,10 @@ def every_branch(kin: Kinematics) -> Program:
 
 def branches(kin: Kinematics) -> Program:
     """All branches in principal values."""
-    program = principal(with_twins(unroll(_nearest(kin, kin.branch), signs(kin))))
-    return common_parts(program, signs(kin), _constants(kin))
+    one = _nearest(kin, kin.branch)
+    every = with_twins(unroll(one, signs(kin)))
+    counted = [name for name in every.bound() if real(without_words(name.name, signs(kin))[0]) in counted_turns(one)]
+    return common_parts(principal(every, counted), signs(kin), _constants(kin))
 
 
 def array_method(kin: Kinematics) -> Method:
@@ -104,7 +117,7 @@ def array_lines(kin: Kinematics, method: Method) -> list[str]:
 def _nearest(kin: Kinematics, program: Program) -> Program:
     """No turn is commanded; on plain numbers a sine costs little."""
     given = specialised(program, {j.turn: sp.Integer(0) for j in kin.period_joints})
-    return without_roots(without_minus(angles_first(given, _constants(kin))))
+    return without_minus(angles_first(given, _constants(kin)))
 
 
 def _constants(kin: Kinematics) -> frozenset[str]:
@@ -142,7 +155,7 @@ def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
             (_FRAME, reference), "tuple[Reals | None, ...]", (),
         ),
         Method(
-            "branch", "One branch in principal values, of input that is trusted.", principal(one),
+            "branch", "One branch in principal values, of input that is trusted.", principal(with_twins(one), counted_turns(one)),
             (_FRAME, sign_values, reference), "Reals | None", (),
         ),
     )  # fmt: skip

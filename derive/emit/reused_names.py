@@ -31,7 +31,7 @@ def reused_names(
         by_stem.setdefault(without_words(name.name, signs)[0], []).append(name)
     names: dict[sp.Symbol, sp.Symbol] = {}
     for variants in by_stem.values():
-        names |= _shortest(variants, signs, lives, fixed)
+        names |= _shortest(variants, signs, lives, fixed | {name.name for name in names.values()})
     return tuple(_renamed(item, names) for item in items), names
 
 

@@ -9,9 +9,8 @@ from derive.angles_first import angles_first
 from derive.directions import plain_directions
 from derive.opposites import without_minus
 from derive.passes import assemble
-from derive.program import DEGREE, FREE_ANGLE, Atan2, Let, NearestPeriod, Output, Program, Require, Root, Select, Status, real
+from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Require, Root, Select, Status, real
 from derive.shorter import shorter
-from derive.squared import without_roots
 from derive.turnless import turnless
 from tests.derivation.test_twins import same, values
 
@@ -208,25 +207,42 @@ def test_the_opposite_direction_is_half_a_turn_away() -> None:
     assert without_minus(read) == read
 
 
-def test_a_length_that_is_squared_or_compared_has_no_root() -> None:
-    reach = real("reach")
-    scaled = Let(R, (reach - A) * (reach + A) * (B - reach) * (B + reach) / E**2)
-    bent = Let(T, (reach**2 - A) / E)
-    chosen = Let(U, Select(sp.Gt(reach, A * FREE_ANGLE), T, X))
-    program = of(Let(reach, Root(X**2 + Y**2), "how far"), scaled, bent, chosen, outputs=(R, U))
-    found = without_roots(program)
-    square = real("reach_squared")
-    assert values(found)["reach_squared"] == X**2 + Y**2 and "reach" not in values(found)
-    assert sp.expand(values(found)["r"] - (square - A**2) * (B**2 - square) / E**2) == 0
-    assert len(values(found)["r"].atoms(sp.Symbol)) == 4
-    assert values(found)["u"] == Select(sp.Gt(square, (A * FREE_ANGLE) ** 2), T, X)
-    assert [let.note for let in found.lets() if let.name == square] == ["how far"]
-    same(program, found)
+def test_a_chain_of_negatives_is_bound_throughout() -> None:
+    program = of(Let(U, -X - Y), Let(V, -U), Let(T, -V), Let(R, T * T + X), outputs=(R,))
+    assert shorter(program).inputs == (X, Y)
+    same(program, shorter(program))
 
 
-@pytest.mark.parametrize(
-    "read", [L + X, X / L, Root(L), (L - A) * X, Select(sp.Gt(L, X), X, Y), Select(sp.Gt(L, A), X, Y)], ids=str
-)
-def test_what_else_is_made_of_a_length_keeps_the_root(read: sp.Expr) -> None:
-    program = of(Let(L, Root(X**2 + Y**2)), Let(R, read), outputs=(R,))
-    assert without_roots(program) == program
+def test_a_divisor_that_can_be_negative_turns_the_angle() -> None:
+    """It is no length: divided by a negative number a direction is the opposite one."""
+    lets = (
+        Let(C1, Select(sp.Gt(R**2, 1), (U * X - V * Y) / R, sp.cos(T))),
+        Let(S1, Select(sp.Gt(R**2, 1), (U * Y + V * X) / R, sp.sin(T))),
+    )
+    program = of(*lets, axis(AXIS1, S1, C1), outputs=(AXIS1,))
+    assert angles_first(program, frozenset()) == program
+
+
+def test_a_quotient_that_reads_another_keeps_its_division() -> None:
+    """It would grow with the square of the length, and the other with the length."""
+    made = Let(real("made"), C1 * X / L)
+    program = of(*DIRECTION[:1], Let(C1, U / L), Let(S1, V / L), made, axis(AXIS1, S1, made.name), outputs=(AXIS1,))
+    assert "l" in values(plain_directions(program))
+    same(program, plain_directions(program))
+
+
+def test_an_angle_times_a_coordinate_of_its_direction_keeps_the_division() -> None:
+    program = of(*DIRECTION, axis(AXIS1, S1, C1), Let(E, C1 * Atan2(S1, C1)), outputs=(AXIS1, E))
+    assert "l" in values(plain_directions(program))
+
+
+def test_half_an_angle_counts_turns_though_its_sines_cancel() -> None:
+    angle = real("angle")
+    program = of(Let(angle, Atan2(X, Y)), Let(R, sp.cos(angle / 2) - sp.sin(angle / 2)), outputs=(R,))
+    assert turnless(program) == set()
+
+
+def test_an_axis_without_a_turn_of_its_own_is_not_turned_round() -> None:
+    lets = (Let(C1, -X * U - Y * V), Let(S1, -X * V - Y))
+    program = of(*lets, Let(AXIS1, Atan2(S1, C1) / DEGREE), outputs=(AXIS1,))
+    assert without_minus(program) == program

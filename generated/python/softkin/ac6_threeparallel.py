@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 168 additions, 156 multiplications, 37 divisions, 9 square roots, 18 sines
-    inverse, all 8 branches open: 1337 additions, 1248 multiplications, 296 divisions, 72 square roots, 144 sines
+    inverse: 171 additions, 164 multiplications, 37 divisions, 9 square roots, 18 sines
+    inverse, all 8 branches open: 1361 additions, 1312 multiplications, 296 divisions, 72 square roots, 144 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -662,11 +662,11 @@ class Ac6ThreeParallel(Mechanism):
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
+        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         q6_radius_of_q5 = radius_q6*sigma_wrist
-        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         # its reference where it is free
         if radius_q6 > 1e-11:
             along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
@@ -677,38 +677,36 @@ class Ac6ThreeParallel(Mechanism):
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3 = cos(free_a6)
             sin_q6_before_q6_of_q3 = sin(free_a6)
+        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
+        r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5*r33
+        wrist_x_from_q1_before_q6_of_q3 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
+        r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
         wrist_z = z - d6*r33
-        # moved to where the rest can be reached
-        if radius_q6 > 0.1:
+        wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2*a2 - a3*a3
+        )
+        # kept where the rest can be reached
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:
-            wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
-            wrist_x_from_q1_along = -d5*r31*cos_q5
-            wrist_y_from_q1_fixed = wrist_z - d1
-            wrist_y_from_q1_along = d5*r32
-            wrist_x_from_q1_across = d5*r32*cos_q5
-            wrist_y_from_q1_across = d5*r31
-            wrist_x_from_q1_here = (
-                wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
-            )
-            wrist_y_from_q1_here = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3 = (
-                wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
-            )
-            # moved to where the rest can be reached
-            if abs(value_q6_of_q3) <= size_q6_of_q3:
+            # kept where the rest can be reached
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > 1.000000001*size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
+                wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+                wrist_x_from_q1_along = -d5*r31*cos_q5
+                wrist_y_from_q1_fixed = wrist_z - d1
+                wrist_y_from_q1_along = d5*r32
                 along_q6_of_q3 = (
                     2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
+                wrist_x_from_q1_across = d5*r32*cos_q5
+                wrist_y_from_q1_across = d5*r31
                 across_q6_of_q3 = (
                     2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
                 )
@@ -762,7 +760,7 @@ class Ac6ThreeParallel(Mechanism):
                     )
                     *radius_q6
                 )
-                # moved to where the rest can be reached
+                # kept where the rest can be reached
                 if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
                     cos_q6 = cos_q6_before_q6_of_q3
                     sin_q6 = sin_q6_before_q6_of_q3

@@ -550,11 +550,11 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
-        r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
-        sin_a6 = direction_y_a4*r32 - direction_x_a4*r12
+        scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
+        direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
-        axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4 + 0.0)/DEGREE  # A6: its turn
+        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)

@@ -390,11 +390,11 @@ class Wrist3(OrientationKinematics):
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        r22_before_c = direction_x_c*r22 + direction_y_c*r21
-        sin_a = -direction_x_c*r12 - direction_y_c*r11
+        scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
+        direction_y_a = -direction_x_c*r12 - direction_y_c*r11
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
         near_a = (360.0*turn_a - 360.0 if turn_a > 0.0 else 360.0*turn_a) if abs(turn_a) > 0.0 else open_a
-        axis_a = offset_a + arctan2(sin_a, r22_before_c + 0.0)/DEGREE  # A: its turn
+        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0)/DEGREE  # A: its turn
         if not -180.000000001 <= axis_a - near_a < 179.999999999:
             axis_a = nearest_period(axis_a, near_a)
         c_radius_of_b = radius_c*sigma_hand

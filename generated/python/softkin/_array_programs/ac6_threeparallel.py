@@ -232,11 +232,11 @@ class ArrayPrograms(Programs):
         cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
         sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
         cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
+        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         q6_radius_of_q5 = radius_q6*sigma_wrist
-        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
 
         def elsewhere_cos_q6_before_q6_of_q3(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -254,40 +254,38 @@ class ArrayPrograms(Programs):
             elsewhere_cos_q6_before_q6_of_q3,
             (ref_a6,),
         )
+        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
+        r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5*r33
+        wrist_x_from_q1_before_q6_of_q3 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
+        r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
         wrist_z = z - d6*r33
+        wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2*a2 - a3*a3
+        )
 
         def elsewhere_cos_q6(
             cos_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5: Real, r31: Real, r32: Real,
-            r33: Real, radius_q6: Real, sin_q1: Real, sin_q6_before_q6_of_q3: Real, wrist_x: Real, wrist_y: Real,
-            wrist_z: Real,
+            r33: Real, radius_q6: Real, sin_q1: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
+            wrist_x: Real, wrist_y: Real, wrist_z: Real,
         ) -> Reals:
-            wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
-            wrist_x_from_q1_along = -d5*r31*cos_q5
-            wrist_y_from_q1_fixed = wrist_z - d1
-            wrist_y_from_q1_along = d5*r32
-            wrist_x_from_q1_across = d5*r32*cos_q5
-            wrist_y_from_q1_across = d5*r31
-            wrist_x_from_q1_here = (
-                wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
-            )
-            wrist_y_from_q1_here = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3 = (
-                wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
-            )
 
             def elsewhere_cos_q6(
-                cos_q6_before_q6_of_q3: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
-                wrist_x_from_q1_across: Real, wrist_x_from_q1_along: Real, wrist_x_from_q1_fixed: Real,
-                wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
+                cos_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5: Real, r31: Real, r32: Real,
+                r33: Real, radius_q6: Real, sin_q1: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
+                wrist_x: Real, wrist_y: Real, wrist_z: Real,
             ) -> Reals:
+                wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+                wrist_x_from_q1_along = -d5*r31*cos_q5
+                wrist_y_from_q1_fixed = wrist_z - d1
+                wrist_y_from_q1_along = d5*r32
                 along_q6_of_q3 = (
                     2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
+                wrist_x_from_q1_across = d5*r32*cos_q5
+                wrist_y_from_q1_across = d5*r31
                 across_q6_of_q3 = (
                     2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
                 )
@@ -348,12 +346,12 @@ class ArrayPrograms(Programs):
                 )
 
                 def elsewhere_cos_q6(cos_q6_after_q6_of_q3: Real, sin_q6_after_q6_of_q3: Real) -> Reals:
-                    cos_q6 = cos_q6_after_q6_of_q3  # moved to where the rest can be reached
-                    sin_q6 = sin_q6_after_q6_of_q3  # moved to where the rest can be reached
+                    cos_q6 = cos_q6_after_q6_of_q3  # kept where the rest can be reached
+                    sin_q6 = sin_q6_after_q6_of_q3  # kept where the rest can be reached
                     return (cos_q6, sin_q6)
 
-                cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-                sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+                cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
+                sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
                 cos_q6, sin_q6 = elsewhere(
                     (cost_q6_of_q3 > 1e-12) & (radius_q6 > 1e-11),
                     (cos_q6, sin_q6),
@@ -362,29 +360,28 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6, sin_q6)
 
-            cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-            sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+            cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
+            sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
             cos_q6, sin_q6 = elsewhere(
-                absolute(value_q6_of_q3) <= size_q6_of_q3,
+                (radius_q6 > 0.1) & (absolute(value_q6_of_q3) > 1.000000001*size_q6_of_q3),
                 (cos_q6, sin_q6),
                 elsewhere_cos_q6,
                 (
-                    cos_q6_before_q6_of_q3, radius_q6, sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_x_from_q1_across,
-                    wrist_x_from_q1_along, wrist_x_from_q1_fixed, wrist_y_from_q1_across, wrist_y_from_q1_along,
-                    wrist_y_from_q1_fixed,
+                    cos_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5, r31, r32, r33, radius_q6, sin_q1,
+                    sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_x, wrist_y, wrist_z,
                 ),
             )
             return (cos_q6, sin_q6)
 
-        cos_q6 = cos_q6_before_q6_of_q3  # moved to where the rest can be reached
-        sin_q6 = sin_q6_before_q6_of_q3  # moved to where the rest can be reached
+        cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
+        sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
         cos_q6, sin_q6 = elsewhere(
-            radius_q6 > 0.1,
+            absolute(value_q6_of_q3) <= size_q6_of_q3,
             (cos_q6, sin_q6),
             elsewhere_cos_q6,
             (
                 cos_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5, r31, r32, r33, radius_q6, sin_q1,
-                sin_q6_before_q6_of_q3, wrist_x, wrist_y, wrist_z,
+                sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_x, wrist_y, wrist_z,
             ),
         )
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
@@ -601,11 +598,11 @@ class ArrayPrograms(Programs):
             elsewhere_cos_q1_left,
             (ref_a1,),
         )
+        cos_q5_left = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
         r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
         r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
         # q6: direction and distance of a point
         radius_q6_left = sqrt(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
-        cos_q5_left = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
 
         def elsewhere_cos_q6_before_q6_of_q3_left_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -635,40 +632,44 @@ class ArrayPrograms(Programs):
             cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
             sin_q6_before_q6_of_q3_left_up,
         ) = found
+        r21_from_q1_before_q6_before_q6_of_q3_left_down = (
+            r31*cos_q6_before_q6_of_q3_left_down - r32*sin_q6_before_q6_of_q3_left_down
+        )
+        r21_from_q1_before_q56_before_q6_of_q3_left_down = (
+            r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left - r33*radius_q6_left
+        )
+        wrist_x_from_q1_before_q6_of_q3_left_down = (
+            wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_left_down
+        )
+        r22_from_q1_before_q6_before_q6_of_q3_left_down = (
+            r32*cos_q6_before_q6_of_q3_left_down + r31*sin_q6_before_q6_of_q3_left_down
+        )
         wrist_z = z - d6*r33
+        wrist_y_from_q1_before_q6_of_q3_left_down = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3_left_down - d1
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_left_down = (
+            wrist_x_from_q1_before_q6_of_q3_left_down*wrist_x_from_q1_before_q6_of_q3_left_down
+            + wrist_y_from_q1_before_q6_of_q3_left_down*wrist_y_from_q1_before_q6_of_q3_left_down - a2*a2 - a3*a3
+        )
 
         def elsewhere_cos_q6_left_down(
-            cos_q1_left: Real, cos_q5_left: Real, cos_q6_before_q6_of_q3_left_down: Real,
-            cos_q6_before_q6_of_q3_left_up: Real, r31: Real, r32: Real, r33: Real, radius_q6_left: Real,
-            sin_q1_left: Real, sin_q6_before_q6_of_q3_left_down: Real, sin_q6_before_q6_of_q3_left_up: Real,
-            wrist_x: Real, wrist_y: Real, wrist_z: Real,
+            cos_q1_left: Real, cos_q5_left: Real, cos_q6_before_q6_of_q3_left_down: Real, r31: Real, r32: Real,
+            r33: Real, radius_q6_left: Real, sin_q1_left: Real, sin_q6_before_q6_of_q3_left_down: Real,
+            value_q6_of_q3_left_down: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
         ) -> Reals:
+            wrist_x_from_q1_along_left = -d5*r31*cos_q5_left
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
-            wrist_y_from_q1_across = d5*r31
-            wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
-            wrist_x_from_q1_along_left = -d5*r31*cos_q5_left
             wrist_x_from_q1_across_left = d5*r32*cos_q5_left
-            wrist_x_from_q1_here_left_down = (
-                wrist_x_from_q1_fixed_left_down + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_down
-                + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_down
-            )
-            wrist_y_from_q1_here_left_down = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_down
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_down
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_left_down = (
-                wrist_x_from_q1_here_left_down*wrist_x_from_q1_here_left_down
-                + wrist_y_from_q1_here_left_down*wrist_y_from_q1_here_left_down - a2*a2 - a3*a3
-            )
+            wrist_y_from_q1_across = d5*r31
 
             def elsewhere_cos_q6_left_down(
-                cos_q6_before_q6_of_q3_left_down: Real, radius_q6_left: Real, sin_q6_before_q6_of_q3_left_down: Real,
-                value_q6_of_q3_left_down: Real, wrist_x_from_q1_across_left: Real, wrist_x_from_q1_along_left: Real,
-                wrist_x_from_q1_fixed_left_down: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
-                wrist_y_from_q1_fixed: Real,
+                cos_q1_left: Real, cos_q6_before_q6_of_q3_left_down: Real, r33: Real, radius_q6_left: Real,
+                sin_q1_left: Real, sin_q6_before_q6_of_q3_left_down: Real, value_q6_of_q3_left_down: Real, wrist_x: Real,
+                wrist_x_from_q1_across_left: Real, wrist_x_from_q1_along_left: Real, wrist_y: Real,
+                wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
             ) -> Reals:
+                wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
                 along_q6_of_q3_left_down = (
                     2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_down
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
@@ -758,12 +759,12 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_left_down(
                     cos_q6_after_q6_of_q3_left_down: Real, sin_q6_after_q6_of_q3_left_down: Real,
                 ) -> Reals:
-                    cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
-                    sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # moved to where the rest can be reached
+                    cos_q6_left_down = cos_q6_after_q6_of_q3_left_down  # kept where the rest can be reached
+                    sin_q6_left_down = sin_q6_after_q6_of_q3_left_down  # kept where the rest can be reached
                     return (cos_q6_left_down, sin_q6_left_down)
 
-                cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-                sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+                cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
+                sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
                 cos_q6_left_down, sin_q6_left_down = elsewhere(
                     (cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left > 1e-11),
                     (cos_q6_left_down, sin_q6_left_down),
@@ -772,165 +773,30 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_left_down, sin_q6_left_down)
 
-            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
+            cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
+            sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
             cos_q6_left_down, sin_q6_left_down = elsewhere(
-                absolute(value_q6_of_q3_left_down) <= size_q6_of_q3,
+                (radius_q6_left > 0.1) & (absolute(value_q6_of_q3_left_down) > 1.000000001*size_q6_of_q3),
                 (cos_q6_left_down, sin_q6_left_down),
                 elsewhere_cos_q6_left_down,
                 (
-                    cos_q6_before_q6_of_q3_left_down, radius_q6_left, sin_q6_before_q6_of_q3_left_down,
-                    value_q6_of_q3_left_down, wrist_x_from_q1_across_left, wrist_x_from_q1_along_left,
-                    wrist_x_from_q1_fixed_left_down, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                    cos_q1_left, cos_q6_before_q6_of_q3_left_down, r33, radius_q6_left, sin_q1_left,
+                    sin_q6_before_q6_of_q3_left_down, value_q6_of_q3_left_down, wrist_x, wrist_x_from_q1_across_left,
+                    wrist_x_from_q1_along_left, wrist_y, wrist_y_from_q1_across, wrist_y_from_q1_along,
+                    wrist_y_from_q1_fixed,
                 ),
             )
-            wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
-            wrist_x_from_q1_here_left_up = (
-                wrist_x_from_q1_fixed_left_up + wrist_x_from_q1_along_left*cos_q6_before_q6_of_q3_left_up
-                + wrist_x_from_q1_across_left*sin_q6_before_q6_of_q3_left_up
-            )
-            wrist_y_from_q1_here_left_up = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_left_up
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_left_up
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_left_up = (
-                wrist_x_from_q1_here_left_up*wrist_x_from_q1_here_left_up
-                + wrist_y_from_q1_here_left_up*wrist_y_from_q1_here_left_up - a2*a2 - a3*a3
-            )
+            return (cos_q6_left_down, sin_q6_left_down)
 
-            def elsewhere_cos_q6_left_up(
-                cos_q6_before_q6_of_q3_left_up: Real, radius_q6_left: Real, sin_q6_before_q6_of_q3_left_up: Real,
-                value_q6_of_q3_left_up: Real, wrist_x_from_q1_across_left: Real, wrist_x_from_q1_along_left: Real,
-                wrist_x_from_q1_fixed_left_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
-                wrist_y_from_q1_fixed: Real,
-            ) -> Reals:
-                along_q6_of_q3_left_up = (
-                    2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
-                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-                )
-                across_q6_of_q3_left_up = (
-                    2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
-                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-                )
-                swing_q6_of_q3_left_up = sqrt(
-                    across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
-                )
-
-                def elsewhere_highest_q6_of_q3_left_up() -> Reals:
-                    highest_q6_of_q3_left_up = 1.0  # the arc: cosines from its centre
-                    lowest_q6_of_q3_left_up = -1.0
-                    return (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up)
-
-                level_q6_of_q3_left_up = (
-                    value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                    - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
-                )
-                # the arc: cosines from its centre
-                highest_q6_of_q3_left_up = select(
-                    (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0,
-                    1.0,
-                    select(
-                        (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up,
-                    ),
-                )
-                lowest_q6_of_q3_left_up = select(
-                    (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up > 1.0,
-                    1.0,
-                    select(
-                        (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up < -1.0,
-                        -1.0,
-                        (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up,
-                    ),
-                )
-                highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up = elsewhere(
-                    swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
-                    (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up),
-                    elsewhere_highest_q6_of_q3_left_up,
-                    (),
-                )
-                near_q6_of_q3_left_up = atan2(
-                    root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
-                    highest_q6_of_q3_left_up,
-                )
-                far_q6_of_q3_left_up = atan2(
-                    root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
-                    lowest_q6_of_q3_left_up,
-                )
-                centre_q6_of_q3_left_up = atan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up)
-                angle_q6_of_q3_left_up = atan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up)
-                side_q6_of_q3_left_up = select(
-                    (
-                        along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
-                        - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
-                    ),
-                    1.0,
-                    -1.0,
-                )
-                moved_q6_of_q3_left_up = nearest_on_arc(
-                    angle_q6_of_q3_left_up,
-                    (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
-                    0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
-                )
-                cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
-                sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
-                # what the motion changes of the pose
-                cost_q6_of_q3_left_up = (
-                    sqrt(
-                        (
-                            cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
-                        )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
-                        + (
-                            sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
-                        )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
-                    )
-                    *radius_q6_left
-                )
-
-                def elsewhere_cos_q6_left_up(
-                    cos_q6_after_q6_of_q3_left_up: Real, sin_q6_after_q6_of_q3_left_up: Real,
-                ) -> Reals:
-                    cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
-                    sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # moved to where the rest can be reached
-                    return (cos_q6_left_up, sin_q6_left_up)
-
-                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-                cos_q6_left_up, sin_q6_left_up = elsewhere(
-                    (cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left > 1e-11),
-                    (cos_q6_left_up, sin_q6_left_up),
-                    elsewhere_cos_q6_left_up,
-                    (cos_q6_after_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up),
-                )
-                return (cos_q6_left_up, sin_q6_left_up)
-
-            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-            cos_q6_left_up, sin_q6_left_up = elsewhere(
-                absolute(value_q6_of_q3_left_up) <= size_q6_of_q3,
-                (cos_q6_left_up, sin_q6_left_up),
-                elsewhere_cos_q6_left_up,
-                (
-                    cos_q6_before_q6_of_q3_left_up, radius_q6_left, sin_q6_before_q6_of_q3_left_up,
-                    value_q6_of_q3_left_up, wrist_x_from_q1_across_left, wrist_x_from_q1_along_left,
-                    wrist_x_from_q1_fixed_left_up, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
-                ),
-            )
-            return (cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up)
-
-        cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-        sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # moved to where the rest can be reached
-        cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-        sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # moved to where the rest can be reached
-        cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up = elsewhere(
-            radius_q6_left > 0.1,
-            (cos_q6_left_down, sin_q6_left_down, cos_q6_left_up, sin_q6_left_up),
+        cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
+        sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
+        cos_q6_left_down, sin_q6_left_down = elsewhere(
+            absolute(value_q6_of_q3_left_down) <= size_q6_of_q3,
+            (cos_q6_left_down, sin_q6_left_down),
             elsewhere_cos_q6_left_down,
             (
-                cos_q1_left, cos_q5_left, cos_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up, r31, r32,
-                r33, radius_q6_left, sin_q1_left, sin_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_up,
-                wrist_x, wrist_y, wrist_z,
+                cos_q1_left, cos_q5_left, cos_q6_before_q6_of_q3_left_down, r31, r32, r33, radius_q6_left,
+                sin_q1_left, sin_q6_before_q6_of_q3_left_down, value_q6_of_q3_left_down, wrist_x, wrist_y, wrist_z,
             ),
         )
         r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
@@ -1043,6 +909,169 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_left_down = nearest_period(offset_a6 + degrees(sin_q6_left_down, cos_q6_left_down), near_a6)
+        r21_from_q1_before_q6_before_q6_of_q3_left_up = (
+            r31*cos_q6_before_q6_of_q3_left_up - r32*sin_q6_before_q6_of_q3_left_up
+        )
+        r21_from_q1_before_q56_before_q6_of_q3_left_up = (
+            r21_from_q1_before_q6_before_q6_of_q3_left_up*cos_q5_left + r33*radius_q6_left
+        )
+        wrist_x_from_q1_before_q6_of_q3_left_up = (
+            wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_left_up
+        )
+        r22_from_q1_before_q6_before_q6_of_q3_left_up = (
+            r32*cos_q6_before_q6_of_q3_left_up + r31*sin_q6_before_q6_of_q3_left_up
+        )
+        wrist_y_from_q1_before_q6_of_q3_left_up = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3_left_up - d1
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_left_up = (
+            wrist_x_from_q1_before_q6_of_q3_left_up*wrist_x_from_q1_before_q6_of_q3_left_up
+            + wrist_y_from_q1_before_q6_of_q3_left_up*wrist_y_from_q1_before_q6_of_q3_left_up - a2*a2 - a3*a3
+        )
+
+        def elsewhere_cos_q6_left_up(
+            cos_q1_left: Real, cos_q5_left: Real, cos_q6_before_q6_of_q3_left_up: Real, r31: Real, r32: Real,
+            r33: Real, radius_q6_left: Real, sin_q1_left: Real, sin_q6_before_q6_of_q3_left_up: Real,
+            value_q6_of_q3_left_up: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+        ) -> Reals:
+            wrist_x_from_q1_along_left = -d5*r31*cos_q5_left
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_x_from_q1_across_left = d5*r32*cos_q5_left
+            wrist_y_from_q1_across = d5*r31
+
+            def elsewhere_cos_q6_left_up(
+                cos_q1_left: Real, cos_q6_before_q6_of_q3_left_up: Real, r33: Real, radius_q6_left: Real,
+                sin_q1_left: Real, sin_q6_before_q6_of_q3_left_up: Real, value_q6_of_q3_left_up: Real, wrist_x: Real,
+                wrist_x_from_q1_across_left: Real, wrist_x_from_q1_along_left: Real, wrist_y: Real,
+                wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
+            ) -> Reals:
+                wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
+                along_q6_of_q3_left_up = (
+                    2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
+                    + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+                )
+                across_q6_of_q3_left_up = (
+                    2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
+                    + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+                )
+                swing_q6_of_q3_left_up = sqrt(
+                    across_q6_of_q3_left_up*across_q6_of_q3_left_up + along_q6_of_q3_left_up*along_q6_of_q3_left_up
+                )
+
+                def elsewhere_highest_q6_of_q3_left_up() -> Reals:
+                    highest_q6_of_q3_left_up = 1.0  # the arc: cosines from its centre
+                    lowest_q6_of_q3_left_up = -1.0
+                    return (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up)
+
+                level_q6_of_q3_left_up = (
+                    value_q6_of_q3_left_up - across_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
+                    - along_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up
+                )
+                # the arc: cosines from its centre
+                highest_q6_of_q3_left_up = select(
+                    (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0,
+                    1.0,
+                    select(
+                        (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0, -1.0,
+                        (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up,
+                    ),
+                )
+                lowest_q6_of_q3_left_up = select(
+                    (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up < -1.0,
+                        -1.0,
+                        (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up,
+                    ),
+                )
+                highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up = elsewhere(
+                    swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
+                    (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up),
+                    elsewhere_highest_q6_of_q3_left_up,
+                    (),
+                )
+                near_q6_of_q3_left_up = atan2(
+                    root((1.0 - highest_q6_of_q3_left_up)*(1.0 + highest_q6_of_q3_left_up)),
+                    highest_q6_of_q3_left_up,
+                )
+                far_q6_of_q3_left_up = atan2(
+                    root((1.0 - lowest_q6_of_q3_left_up)*(1.0 + lowest_q6_of_q3_left_up)),
+                    lowest_q6_of_q3_left_up,
+                )
+                centre_q6_of_q3_left_up = atan2(across_q6_of_q3_left_up, along_q6_of_q3_left_up)
+                angle_q6_of_q3_left_up = atan2(sin_q6_before_q6_of_q3_left_up, cos_q6_before_q6_of_q3_left_up)
+                side_q6_of_q3_left_up = select(
+                    (
+                        along_q6_of_q3_left_up*sin_q6_before_q6_of_q3_left_up
+                        - across_q6_of_q3_left_up*cos_q6_before_q6_of_q3_left_up >= 0.0
+                    ),
+                    1.0,
+                    -1.0,
+                )
+                moved_q6_of_q3_left_up = nearest_on_arc(
+                    angle_q6_of_q3_left_up,
+                    (centre_q6_of_q3_left_up + 0.5*(far_q6_of_q3_left_up + near_q6_of_q3_left_up)*side_q6_of_q3_left_up),
+                    0.5*far_q6_of_q3_left_up - 0.5*near_q6_of_q3_left_up,
+                )
+                cos_q6_after_q6_of_q3_left_up = cos(moved_q6_of_q3_left_up)
+                sin_q6_after_q6_of_q3_left_up = sin(moved_q6_of_q3_left_up)
+                # what the motion changes of the pose
+                cost_q6_of_q3_left_up = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up
+                        )*(cos_q6_after_q6_of_q3_left_up - cos_q6_before_q6_of_q3_left_up)
+                        + (
+                            sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
+                        )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
+                    )
+                    *radius_q6_left
+                )
+
+                def elsewhere_cos_q6_left_up(
+                    cos_q6_after_q6_of_q3_left_up: Real, sin_q6_after_q6_of_q3_left_up: Real,
+                ) -> Reals:
+                    cos_q6_left_up = cos_q6_after_q6_of_q3_left_up  # kept where the rest can be reached
+                    sin_q6_left_up = sin_q6_after_q6_of_q3_left_up  # kept where the rest can be reached
+                    return (cos_q6_left_up, sin_q6_left_up)
+
+                cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
+                sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
+                cos_q6_left_up, sin_q6_left_up = elsewhere(
+                    (cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left > 1e-11),
+                    (cos_q6_left_up, sin_q6_left_up),
+                    elsewhere_cos_q6_left_up,
+                    (cos_q6_after_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up),
+                )
+                return (cos_q6_left_up, sin_q6_left_up)
+
+            cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
+            sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
+            cos_q6_left_up, sin_q6_left_up = elsewhere(
+                (radius_q6_left > 0.1) & (absolute(value_q6_of_q3_left_up) > 1.000000001*size_q6_of_q3),
+                (cos_q6_left_up, sin_q6_left_up),
+                elsewhere_cos_q6_left_up,
+                (
+                    cos_q1_left, cos_q6_before_q6_of_q3_left_up, r33, radius_q6_left, sin_q1_left,
+                    sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up, wrist_x, wrist_x_from_q1_across_left,
+                    wrist_x_from_q1_along_left, wrist_y, wrist_y_from_q1_across, wrist_y_from_q1_along,
+                    wrist_y_from_q1_fixed,
+                ),
+            )
+            return (cos_q6_left_up, sin_q6_left_up)
+
+        cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
+        sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
+        cos_q6_left_up, sin_q6_left_up = elsewhere(
+            absolute(value_q6_of_q3_left_up) <= size_q6_of_q3,
+            (cos_q6_left_up, sin_q6_left_up),
+            elsewhere_cos_q6_left_up,
+            (
+                cos_q1_left, cos_q5_left, cos_q6_before_q6_of_q3_left_up, r31, r32, r33, radius_q6_left, sin_q1_left,
+                sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up, wrist_x, wrist_y, wrist_z,
+            ),
+        )
         r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
         r21_from_q1_before_q56_left_up = r21_from_q1_before_q6_left_up*cos_q5_left + r33*radius_q6_left
         # what the unknown links must span
@@ -1130,11 +1159,11 @@ class ArrayPrograms(Programs):
         axis_a4_left_down_up = nearest_period(
             offset_a4 + (angle_with_q4_left_up - angle_q2_left_down_up - angle_q3_left_down_up)/DEGREE, near_a4,
         )
+        cos_q5_right = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
         r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
         r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
         # q6: direction and distance of a point
         radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
-        cos_q5_right = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
 
         def elsewhere_cos_q6_before_q6_of_q3_right_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -1164,39 +1193,45 @@ class ArrayPrograms(Programs):
             cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up,
             sin_q6_before_q6_of_q3_right_up,
         ) = found
+        r21_from_q1_before_q6_before_q6_of_q3_right_down = (
+            r31*cos_q6_before_q6_of_q3_right_down - r32*sin_q6_before_q6_of_q3_right_down
+        )
+        r21_from_q1_before_q56_before_q6_of_q3_right_down = (
+            r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right - r33*radius_q6_right
+        )
+        wrist_x_from_q1_before_q6_of_q3_right_down = (
+            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_right_down
+        )
+        r22_from_q1_before_q6_before_q6_of_q3_right_down = (
+            r32*cos_q6_before_q6_of_q3_right_down + r31*sin_q6_before_q6_of_q3_right_down
+        )
+        wrist_y_from_q1_before_q6_of_q3_right_down = (
+            wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3_right_down - d1
+        )
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_right_down = (
+            wrist_x_from_q1_before_q6_of_q3_right_down*wrist_x_from_q1_before_q6_of_q3_right_down
+            + wrist_y_from_q1_before_q6_of_q3_right_down*wrist_y_from_q1_before_q6_of_q3_right_down - a2*a2 - a3*a3
+        )
 
         def elsewhere_cos_q6_right_down(
-            cos_q1_right: Real, cos_q5_right: Real, cos_q6_before_q6_of_q3_right_down: Real,
-            cos_q6_before_q6_of_q3_right_up: Real, r31: Real, r32: Real, r33: Real, radius_q6_right: Real,
-            sin_q1_right: Real, sin_q6_before_q6_of_q3_right_down: Real, sin_q6_before_q6_of_q3_right_up: Real,
-            wrist_x: Real, wrist_y: Real, wrist_z: Real,
+            cos_q1_right: Real, cos_q5_right: Real, cos_q6_before_q6_of_q3_right_down: Real, r31: Real, r32: Real,
+            r33: Real, radius_q6_right: Real, sin_q1_right: Real, sin_q6_before_q6_of_q3_right_down: Real,
+            value_q6_of_q3_right_down: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
         ) -> Reals:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_across = d5*r31
-            wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
             wrist_x_from_q1_along_right = -d5*r31*cos_q5_right
             wrist_x_from_q1_across_right = d5*r32*cos_q5_right
-            wrist_x_from_q1_here_right_down = (
-                wrist_x_from_q1_fixed_right_down + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_down
-                + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_down
-            )
-            wrist_y_from_q1_here_right_down = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_down
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_down
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_right_down = (
-                wrist_x_from_q1_here_right_down*wrist_x_from_q1_here_right_down
-                + wrist_y_from_q1_here_right_down*wrist_y_from_q1_here_right_down - a2*a2 - a3*a3
-            )
 
             def elsewhere_cos_q6_right_down(
-                cos_q6_before_q6_of_q3_right_down: Real, radius_q6_right: Real, sin_q6_before_q6_of_q3_right_down: Real,
-                value_q6_of_q3_right_down: Real, wrist_x_from_q1_across_right: Real, wrist_x_from_q1_along_right: Real,
-                wrist_x_from_q1_fixed_right_down: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
-                wrist_y_from_q1_fixed: Real,
+                cos_q1_right: Real, cos_q6_before_q6_of_q3_right_down: Real, r33: Real, radius_q6_right: Real,
+                sin_q1_right: Real, sin_q6_before_q6_of_q3_right_down: Real, value_q6_of_q3_right_down: Real,
+                wrist_x: Real, wrist_x_from_q1_across_right: Real, wrist_x_from_q1_along_right: Real, wrist_y: Real,
+                wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
             ) -> Reals:
+                wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
                 along_q6_of_q3_right_down = (
                     2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
@@ -1287,12 +1322,12 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_right_down(
                     cos_q6_after_q6_of_q3_right_down: Real, sin_q6_after_q6_of_q3_right_down: Real,
                 ) -> Reals:
-                    cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
-                    sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # moved to where the rest can be reached
+                    cos_q6_right_down = cos_q6_after_q6_of_q3_right_down  # kept where the rest can be reached
+                    sin_q6_right_down = sin_q6_after_q6_of_q3_right_down  # kept where the rest can be reached
                     return (cos_q6_right_down, sin_q6_right_down)
 
-                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+                cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
+                sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
                 cos_q6_right_down, sin_q6_right_down = elsewhere(
                     (cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right > 1e-11),
                     (cos_q6_right_down, sin_q6_right_down),
@@ -1301,40 +1336,151 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_right_down, sin_q6_right_down)
 
-            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
+            cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
+            sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
             cos_q6_right_down, sin_q6_right_down = elsewhere(
-                absolute(value_q6_of_q3_right_down) <= size_q6_of_q3,
+                (radius_q6_right > 0.1) & (absolute(value_q6_of_q3_right_down) > 1.000000001*size_q6_of_q3),
                 (cos_q6_right_down, sin_q6_right_down),
                 elsewhere_cos_q6_right_down,
                 (
-                    cos_q6_before_q6_of_q3_right_down, radius_q6_right, sin_q6_before_q6_of_q3_right_down,
-                    value_q6_of_q3_right_down, wrist_x_from_q1_across_right, wrist_x_from_q1_along_right,
-                    wrist_x_from_q1_fixed_right_down, wrist_y_from_q1_across, wrist_y_from_q1_along,
+                    cos_q1_right, cos_q6_before_q6_of_q3_right_down, r33, radius_q6_right, sin_q1_right,
+                    sin_q6_before_q6_of_q3_right_down, value_q6_of_q3_right_down, wrist_x, wrist_x_from_q1_across_right,
+                    wrist_x_from_q1_along_right, wrist_y, wrist_y_from_q1_across, wrist_y_from_q1_along,
                     wrist_y_from_q1_fixed,
                 ),
             )
-            wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
-            wrist_x_from_q1_here_right_up = (
-                wrist_x_from_q1_fixed_right_up + wrist_x_from_q1_along_right*cos_q6_before_q6_of_q3_right_up
-                + wrist_x_from_q1_across_right*sin_q6_before_q6_of_q3_right_up
-            )
-            wrist_y_from_q1_here_right_up = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_right_up
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_right_up
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_right_up = (
-                wrist_x_from_q1_here_right_up*wrist_x_from_q1_here_right_up
-                + wrist_y_from_q1_here_right_up*wrist_y_from_q1_here_right_up - a2*a2 - a3*a3
+            return (cos_q6_right_down, sin_q6_right_down)
+
+        cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
+        sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
+        cos_q6_right_down, sin_q6_right_down = elsewhere(
+            absolute(value_q6_of_q3_right_down) <= size_q6_of_q3,
+            (cos_q6_right_down, sin_q6_right_down),
+            elsewhere_cos_q6_right_down,
+            (
+                cos_q1_right, cos_q5_right, cos_q6_before_q6_of_q3_right_down, r31, r32, r33, radius_q6_right,
+                sin_q1_right, sin_q6_before_q6_of_q3_right_down, value_q6_of_q3_right_down, wrist_x, wrist_y, wrist_z,
+            ),
+        )
+        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
+        r21_from_q1_before_q56_right_down = r21_from_q1_before_q6_right_down*cos_q5_right - r33*radius_q6_right
+        # what the unknown links must span
+        wrist_x_from_q1_right_down = (
+            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
+        )
+        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
+        # what the unknown links must span
+        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
+        reach_right_down = sqrt(
+            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
+            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
+        )
+        # kept as a product
+        sine_square_q3_right_down = (
+            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
+            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
+        )
+        refusal_right_down = select(sine_square_q3_right_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
+        axis_a1_right = nearest_period(offset_a1 + degrees(sin_q1_right, cos_q1_right), near_a1)  # A1: its turn
+        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
+        sin_q3_right_up_down = root(sine_square_q3_right_down)
+
+        def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
+            free_a2 = (ref_a2 - offset_a2)*DEGREE
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_right_up_down = cos(free_a2)
+            direction_y_q2_right_up_down = sin(free_a2)
+            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+            direction_x_q2_right_down_down = direction_x_q2_right_up_down
+            direction_y_q2_right_down_down = direction_y_q2_right_up_down
+            return (
+                direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
+                direction_y_q2_right_down_down,
             )
 
+        arm_along_q2_right_down = a2 + a3*cos_q3_right_down
+        arm_across_q2_right_up_down = a3*sin_q3_right_up_down
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_right_up_down = (
+            arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+            + arm_along_q2_right_down*wrist_x_from_q1_right_down
+        )
+        direction_y_q2_right_up_down = (
+            arm_along_q2_right_down*wrist_y_from_q1_right_down
+            - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+        )
+        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
+        direction_x_q2_right_down_down = (
+            arm_along_q2_right_down*wrist_x_from_q1_right_down
+            - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
+        )
+        direction_y_q2_right_down_down = (
+            arm_across_q2_right_up_down*wrist_x_from_q1_right_down
+            + arm_along_q2_right_down*wrist_y_from_q1_right_down
+        )
+        found = elsewhere(
+            reach_right_down > 1e-11*machine_scale,
+            (
+                direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
+                direction_y_q2_right_down_down,
+            ),
+            elsewhere_direction_x_q2_right_up_down,
+            (ref_a2,),
+        )
+        (
+            direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
+            direction_y_q2_right_down_down,
+        ) = found
+        angle_q2_right_up_down = atan2(direction_y_q2_right_up_down, direction_x_q2_right_up_down)
+        axis_a2_right_up_down = nearest_period(offset_a2 + angle_q2_right_up_down/DEGREE, near_a2)  # A2: its turn
+        angle_q3_right_up_down = atan2(sin_q3_right_up_down, cos_q3_right_down)
+        axis_a3_right_up_down = nearest_period(offset_a3 + angle_q3_right_up_down/DEGREE, near_a3)  # A3: its turn
+        angle_with_q4_right_down = atan2(r21_from_q1_before_q56_right_down, r22_from_q1_before_q6_right_down)
+        # q4: what the sum q234 leaves; A4: its turn
+        axis_a4_right_up_down = nearest_period(
+            offset_a4 + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down)/DEGREE, near_a4,
+        )
+        # A5: its turn
+        axis_a5_right_down = nearest_period(offset_a5 + degrees(radius_q6_right, cos_q5_right), near_a5)
+        # A6: its turn
+        axis_a6_right_down = nearest_period(offset_a6 + degrees(sin_q6_right_down, cos_q6_right_down), near_a6)
+        r21_from_q1_before_q6_before_q6_of_q3_right_up = (
+            r31*cos_q6_before_q6_of_q3_right_up - r32*sin_q6_before_q6_of_q3_right_up
+        )
+        r21_from_q1_before_q56_before_q6_of_q3_right_up = (
+            r21_from_q1_before_q6_before_q6_of_q3_right_up*cos_q5_right + r33*radius_q6_right
+        )
+        wrist_x_from_q1_before_q6_of_q3_right_up = (
+            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_right_up
+        )
+        r22_from_q1_before_q6_before_q6_of_q3_right_up = (
+            r32*cos_q6_before_q6_of_q3_right_up + r31*sin_q6_before_q6_of_q3_right_up
+        )
+        wrist_y_from_q1_before_q6_of_q3_right_up = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3_right_up - d1
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3_right_up = (
+            wrist_x_from_q1_before_q6_of_q3_right_up*wrist_x_from_q1_before_q6_of_q3_right_up
+            + wrist_y_from_q1_before_q6_of_q3_right_up*wrist_y_from_q1_before_q6_of_q3_right_up - a2*a2 - a3*a3
+        )
+
+        def elsewhere_cos_q6_right_up(
+            cos_q1_right: Real, cos_q5_right: Real, cos_q6_before_q6_of_q3_right_up: Real, r31: Real, r32: Real,
+            r33: Real, radius_q6_right: Real, sin_q1_right: Real, sin_q6_before_q6_of_q3_right_up: Real,
+            value_q6_of_q3_right_up: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+        ) -> Reals:
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_across = d5*r31
+            wrist_x_from_q1_along_right = -d5*r31*cos_q5_right
+            wrist_x_from_q1_across_right = d5*r32*cos_q5_right
+
             def elsewhere_cos_q6_right_up(
-                cos_q6_before_q6_of_q3_right_up: Real, radius_q6_right: Real, sin_q6_before_q6_of_q3_right_up: Real,
-                value_q6_of_q3_right_up: Real, wrist_x_from_q1_across_right: Real, wrist_x_from_q1_along_right: Real,
-                wrist_x_from_q1_fixed_right_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
-                wrist_y_from_q1_fixed: Real,
+                cos_q1_right: Real, cos_q6_before_q6_of_q3_right_up: Real, r33: Real, radius_q6_right: Real,
+                sin_q1_right: Real, sin_q6_before_q6_of_q3_right_up: Real, value_q6_of_q3_right_up: Real, wrist_x: Real,
+                wrist_x_from_q1_across_right: Real, wrist_x_from_q1_along_right: Real, wrist_y: Real,
+                wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
             ) -> Reals:
+                wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
                 along_q6_of_q3_right_up = (
                     2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
@@ -1421,12 +1567,12 @@ class ArrayPrograms(Programs):
                 def elsewhere_cos_q6_right_up(
                     cos_q6_after_q6_of_q3_right_up: Real, sin_q6_after_q6_of_q3_right_up: Real,
                 ) -> Reals:
-                    cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
-                    sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # moved to where the rest can be reached
+                    cos_q6_right_up = cos_q6_after_q6_of_q3_right_up  # kept where the rest can be reached
+                    sin_q6_right_up = sin_q6_after_q6_of_q3_right_up  # kept where the rest can be reached
                     return (cos_q6_right_up, sin_q6_right_up)
 
-                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+                cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
+                sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
                 cos_q6_right_up, sin_q6_right_up = elsewhere(
                     (cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right > 1e-11),
                     (cos_q6_right_up, sin_q6_right_up),
@@ -1435,116 +1581,32 @@ class ArrayPrograms(Programs):
                 )
                 return (cos_q6_right_up, sin_q6_right_up)
 
-            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
+            cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
+            sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
             cos_q6_right_up, sin_q6_right_up = elsewhere(
-                absolute(value_q6_of_q3_right_up) <= size_q6_of_q3,
+                (radius_q6_right > 0.1) & (absolute(value_q6_of_q3_right_up) > 1.000000001*size_q6_of_q3),
                 (cos_q6_right_up, sin_q6_right_up),
                 elsewhere_cos_q6_right_up,
                 (
-                    cos_q6_before_q6_of_q3_right_up, radius_q6_right, sin_q6_before_q6_of_q3_right_up,
-                    value_q6_of_q3_right_up, wrist_x_from_q1_across_right, wrist_x_from_q1_along_right,
-                    wrist_x_from_q1_fixed_right_up, wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
+                    cos_q1_right, cos_q6_before_q6_of_q3_right_up, r33, radius_q6_right, sin_q1_right,
+                    sin_q6_before_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_x, wrist_x_from_q1_across_right,
+                    wrist_x_from_q1_along_right, wrist_y, wrist_y_from_q1_across, wrist_y_from_q1_along,
+                    wrist_y_from_q1_fixed,
                 ),
             )
-            return (cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up)
+            return (cos_q6_right_up, sin_q6_right_up)
 
-        cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-        sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # moved to where the rest can be reached
-        cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-        sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # moved to where the rest can be reached
-        cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up = elsewhere(
-            radius_q6_right > 0.1,
-            (cos_q6_right_down, sin_q6_right_down, cos_q6_right_up, sin_q6_right_up),
-            elsewhere_cos_q6_right_down,
+        cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
+        sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
+        cos_q6_right_up, sin_q6_right_up = elsewhere(
+            absolute(value_q6_of_q3_right_up) <= size_q6_of_q3,
+            (cos_q6_right_up, sin_q6_right_up),
+            elsewhere_cos_q6_right_up,
             (
-                cos_q1_right, cos_q5_right, cos_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up, r31,
-                r32, r33, radius_q6_right, sin_q1_right, sin_q6_before_q6_of_q3_right_down,
-                sin_q6_before_q6_of_q3_right_up, wrist_x, wrist_y, wrist_z,
+                cos_q1_right, cos_q5_right, cos_q6_before_q6_of_q3_right_up, r31, r32, r33, radius_q6_right,
+                sin_q1_right, sin_q6_before_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_x, wrist_y, wrist_z,
             ),
         )
-        r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
-        r21_from_q1_before_q56_right_down = r21_from_q1_before_q6_right_down*cos_q5_right - r33*radius_q6_right
-        # what the unknown links must span
-        wrist_x_from_q1_right_down = (
-            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
-        )
-        r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
-        # what the unknown links must span
-        wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
-        reach_right_down = sqrt(
-            wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
-            + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
-        )
-        # kept as a product
-        sine_square_q3_right_down = (
-            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
-            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
-        )
-        refusal_right_down = select(sine_square_q3_right_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        axis_a1_right = nearest_period(offset_a1 + degrees(sin_q1_right, cos_q1_right), near_a1)  # A1: its turn
-        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
-        sin_q3_right_up_down = root(sine_square_q3_right_down)
-
-        def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_right_up_down = cos(free_a2)
-            direction_y_q2_right_up_down = sin(free_a2)
-            # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-            direction_x_q2_right_down_down = direction_x_q2_right_up_down
-            direction_y_q2_right_down_down = direction_y_q2_right_up_down
-            return (
-                direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
-                direction_y_q2_right_down_down,
-            )
-
-        arm_along_q2_right_down = a2 + a3*cos_q3_right_down
-        arm_across_q2_right_up_down = a3*sin_q3_right_up_down
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-        direction_x_q2_right_up_down = (
-            arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-            + arm_along_q2_right_down*wrist_x_from_q1_right_down
-        )
-        direction_y_q2_right_up_down = (
-            arm_along_q2_right_down*wrist_y_from_q1_right_down
-            - arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-        )
-        # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
-        direction_x_q2_right_down_down = (
-            arm_along_q2_right_down*wrist_x_from_q1_right_down
-            - arm_across_q2_right_up_down*wrist_y_from_q1_right_down
-        )
-        direction_y_q2_right_down_down = (
-            arm_across_q2_right_up_down*wrist_x_from_q1_right_down
-            + arm_along_q2_right_down*wrist_y_from_q1_right_down
-        )
-        found = elsewhere(
-            reach_right_down > 1e-11*machine_scale,
-            (
-                direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
-                direction_y_q2_right_down_down,
-            ),
-            elsewhere_direction_x_q2_right_up_down,
-            (ref_a2,),
-        )
-        (
-            direction_x_q2_right_up_down, direction_y_q2_right_up_down, direction_x_q2_right_down_down,
-            direction_y_q2_right_down_down,
-        ) = found
-        angle_q2_right_up_down = atan2(direction_y_q2_right_up_down, direction_x_q2_right_up_down)
-        axis_a2_right_up_down = nearest_period(offset_a2 + angle_q2_right_up_down/DEGREE, near_a2)  # A2: its turn
-        angle_q3_right_up_down = atan2(sin_q3_right_up_down, cos_q3_right_down)
-        axis_a3_right_up_down = nearest_period(offset_a3 + angle_q3_right_up_down/DEGREE, near_a3)  # A3: its turn
-        angle_with_q4_right_down = atan2(r21_from_q1_before_q56_right_down, r22_from_q1_before_q6_right_down)
-        # q4: what the sum q234 leaves; A4: its turn
-        axis_a4_right_up_down = nearest_period(
-            offset_a4 + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down)/DEGREE, near_a4,
-        )
-        # A5: its turn
-        axis_a5_right_down = nearest_period(offset_a5 + degrees(radius_q6_right, cos_q5_right), near_a5)
-        # A6: its turn
-        axis_a6_right_down = nearest_period(offset_a6 + degrees(sin_q6_right_down, cos_q6_right_down), near_a6)
         r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
         r21_from_q1_before_q56_right_up = r21_from_q1_before_q6_right_up*cos_q5_right + r33*radius_q6_right
         # what the unknown links must span

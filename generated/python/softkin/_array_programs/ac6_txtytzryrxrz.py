@@ -194,15 +194,15 @@ class ArrayPrograms(Programs):
             open_a5,
         )
         axis_a5 = nearest_period(offset_a5 + degrees(sin_a5, a4_radius_of_a5), near_a5)  # A5: its turn
-        r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
-        sin_a6 = direction_y_a4*r32 - direction_x_a4*r12
+        scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
+        direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
             select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
             open_a6,
         )
-        axis_a6 = nearest_period(offset_a6 + degrees(sin_a6, r11_from_a4), near_a6)  # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + degrees(direction_y_a6, scaled_r11_from_a4), near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -337,8 +337,8 @@ class ArrayPrograms(Programs):
             open_a5,
         )
         axis_a5_upright = nearest_period(offset_a5 + degrees(-r23, radius_a4), near_a5)  # A5: its turn
-        r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
-        sin_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
+        scaled_r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
+        direction_y_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
@@ -346,14 +346,20 @@ class ArrayPrograms(Programs):
             open_a6,
         )
         # A6: its turn
-        axis_a6_upright = nearest_period(offset_a6 + degrees(sin_a6_upright, r11_from_a4_upright), near_a6)
+        axis_a6_upright = nearest_period(
+            offset_a6 + degrees(direction_y_a6_upright, scaled_r11_from_a4_upright),
+            near_a6,
+        )
         # A4: its turn
         axis_a4_flipped = nearest_period(offset_a4 + degrees(direction_y_a4_flipped, direction_x_a4_flipped), near_a4)
         axis_a5_flipped = nearest_period(offset_a5 + degrees(-r23, -radius_a4), near_a5)  # A5: its turn
-        r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
-        sin_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
+        scaled_r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
+        direction_y_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
         # A6: its turn
-        axis_a6_flipped = nearest_period(offset_a6 + degrees(sin_a6_flipped, r11_from_a4_flipped), near_a6)
+        axis_a6_flipped = nearest_period(
+            offset_a6 + degrees(direction_y_a6_flipped, scaled_r11_from_a4_flipped),
+            near_a6,
+        )
         return (
             ((axis_a1, axis_a2, axis_a3, axis_a4_upright, axis_a5_upright, axis_a6_upright), status),
             ((axis_a1, axis_a2, axis_a3, axis_a4_flipped, axis_a5_flipped, axis_a6_flipped), status),

@@ -337,18 +337,19 @@ class ArrayPrograms(Programs):
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        r21_from_q1234 = -direction_x_q4*r21_from_q1 - direction_y_q4*r11_from_q123
+        scaled_r21_from_q1234 = -direction_x_q4*r21_from_q1 - direction_y_q4*r11_from_q123
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         r12_from_q1 = r12*cos_q1 + r22*sin_q1
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
+        scaled_r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
             select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
             open_a6,
         )
-        axis_a6 = nearest_period(offset_a6 + degrees(r21_from_q1234, r22_from_q1234), near_a6)  # A6: its turn
+        # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + degrees(scaled_r21_from_q1234, scaled_r22_from_q1234), near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:
@@ -623,14 +624,14 @@ class ArrayPrograms(Programs):
         r21_from_q1_front = r21*cos_q1_front - r11*sin_q1_front
         r11_from_q1_front = r11*cos_q1_front + r21*sin_q1_front
         r11_from_q123_front_down = r31*cos_q23_front_down - r11_from_q1_front*sin_q23_front_down
-        r21_from_q1234_front_down_down = (
+        scaled_r21_from_q1234_front_down_down = (
             -direction_x_q4_front_down_down*r21_from_q1_front
             - direction_y_q4_front_down_down*r11_from_q123_front_down
         )
         r22_from_q1_front = r22*cos_q1_front - r12*sin_q1_front
         r12_from_q1_front = r12*cos_q1_front + r22*sin_q1_front
         r12_from_q123_front_down = r32*cos_q23_front_down - r12_from_q1_front*sin_q23_front_down
-        r22_from_q1234_front_down_down = (
+        scaled_r22_from_q1234_front_down_down = (
             -direction_x_q4_front_down_down*r22_from_q1_front
             - direction_y_q4_front_down_down*r12_from_q123_front_down
         )
@@ -642,7 +643,7 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_front_down_down = nearest_period(
-            offset_a6 + degrees(r21_from_q1234_front_down_down, r22_from_q1234_front_down_down),
+            offset_a6 + degrees(scaled_r21_from_q1234_front_down_down, scaled_r22_from_q1234_front_down_down),
             near_a6,
         )
         # A4: its turn
@@ -652,15 +653,15 @@ class ArrayPrograms(Programs):
         )
         # A5: its turn
         axis_a5_front_down_up = nearest_period(offset_a5 + degrees(-radius_q4_front_down, cos_q5_front_down), near_a5)
-        r21_from_q1234_front_down_up = (
+        scaled_r21_from_q1234_front_down_up = (
             -direction_x_q4_front_down_up*r21_from_q1_front - direction_y_q4_front_down_up*r11_from_q123_front_down
         )
-        r22_from_q1234_front_down_up = (
+        scaled_r22_from_q1234_front_down_up = (
             -direction_x_q4_front_down_up*r22_from_q1_front - direction_y_q4_front_down_up*r12_from_q123_front_down
         )
         # A6: its turn
         axis_a6_front_down_up = nearest_period(
-            offset_a6 + degrees(r21_from_q1234_front_down_up, r22_from_q1234_front_down_up),
+            offset_a6 + degrees(scaled_r21_from_q1234_front_down_up, scaled_r22_from_q1234_front_down_up),
             near_a6,
         )
         # A2: its turn
@@ -717,16 +718,16 @@ class ArrayPrograms(Programs):
         # A5: its turn
         axis_a5_front_up_down = nearest_period(offset_a5 + degrees(radius_q4_front_up, cos_q5_front_up), near_a5)
         r11_from_q123_front_up = r31*cos_q23_front_up - r11_from_q1_front*sin_q23_front_up
-        r21_from_q1234_front_up_down = (
+        scaled_r21_from_q1234_front_up_down = (
             -direction_x_q4_front_up_down*r21_from_q1_front - direction_y_q4_front_up_down*r11_from_q123_front_up
         )
         r12_from_q123_front_up = r32*cos_q23_front_up - r12_from_q1_front*sin_q23_front_up
-        r22_from_q1234_front_up_down = (
+        scaled_r22_from_q1234_front_up_down = (
             -direction_x_q4_front_up_down*r22_from_q1_front - direction_y_q4_front_up_down*r12_from_q123_front_up
         )
         # A6: its turn
         axis_a6_front_up_down = nearest_period(
-            offset_a6 + degrees(r21_from_q1234_front_up_down, r22_from_q1234_front_up_down),
+            offset_a6 + degrees(scaled_r21_from_q1234_front_up_down, scaled_r22_from_q1234_front_up_down),
             near_a6,
         )
         # A4: its turn
@@ -736,15 +737,15 @@ class ArrayPrograms(Programs):
         )
         # A5: its turn
         axis_a5_front_up_up = nearest_period(offset_a5 + degrees(-radius_q4_front_up, cos_q5_front_up), near_a5)
-        r21_from_q1234_front_up_up = (
+        scaled_r21_from_q1234_front_up_up = (
             -direction_x_q4_front_up_up*r21_from_q1_front - direction_y_q4_front_up_up*r11_from_q123_front_up
         )
-        r22_from_q1234_front_up_up = (
+        scaled_r22_from_q1234_front_up_up = (
             -direction_x_q4_front_up_up*r22_from_q1_front - direction_y_q4_front_up_up*r12_from_q123_front_up
         )
         # A6: its turn
         axis_a6_front_up_up = nearest_period(
-            offset_a6 + degrees(r21_from_q1234_front_up_up, r22_from_q1234_front_up_up),
+            offset_a6 + degrees(scaled_r21_from_q1234_front_up_up, scaled_r22_from_q1234_front_up_up),
             near_a6,
         )
         wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
@@ -847,18 +848,18 @@ class ArrayPrograms(Programs):
         r21_from_q1_back = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1_back = r11*cos_q1_back + r21*sin_q1_back
         r11_from_q123_back_down = r31*cos_q23_back_down - r11_from_q1_back*sin_q23_back_down
-        r21_from_q1234_back_down_down = (
+        scaled_r21_from_q1234_back_down_down = (
             -direction_x_q4_back_down_down*r21_from_q1_back - direction_y_q4_back_down_down*r11_from_q123_back_down
         )
         r22_from_q1_back = r22*cos_q1_back - r12*sin_q1_back
         r12_from_q1_back = r12*cos_q1_back + r22*sin_q1_back
         r12_from_q123_back_down = r32*cos_q23_back_down - r12_from_q1_back*sin_q23_back_down
-        r22_from_q1234_back_down_down = (
+        scaled_r22_from_q1234_back_down_down = (
             -direction_x_q4_back_down_down*r22_from_q1_back - direction_y_q4_back_down_down*r12_from_q123_back_down
         )
         # A6: its turn
         axis_a6_back_down_down = nearest_period(
-            offset_a6 + degrees(r21_from_q1234_back_down_down, r22_from_q1234_back_down_down),
+            offset_a6 + degrees(scaled_r21_from_q1234_back_down_down, scaled_r22_from_q1234_back_down_down),
             near_a6,
         )
         # A4: its turn
@@ -868,15 +869,15 @@ class ArrayPrograms(Programs):
         )
         # A5: its turn
         axis_a5_back_down_up = nearest_period(offset_a5 + degrees(-radius_q4_back_down, cos_q5_back_down), near_a5)
-        r21_from_q1234_back_down_up = (
+        scaled_r21_from_q1234_back_down_up = (
             -direction_x_q4_back_down_up*r21_from_q1_back - direction_y_q4_back_down_up*r11_from_q123_back_down
         )
-        r22_from_q1234_back_down_up = (
+        scaled_r22_from_q1234_back_down_up = (
             -direction_x_q4_back_down_up*r22_from_q1_back - direction_y_q4_back_down_up*r12_from_q123_back_down
         )
         # A6: its turn
         axis_a6_back_down_up = nearest_period(
-            offset_a6 + degrees(r21_from_q1234_back_down_up, r22_from_q1234_back_down_up),
+            offset_a6 + degrees(scaled_r21_from_q1234_back_down_up, scaled_r22_from_q1234_back_down_up),
             near_a6,
         )
         axis_a2_back_up = nearest_period(offset_a2 + degrees(sin_q2_back_up, cos_q2_back_up), near_a2)  # A2: its turn
@@ -931,16 +932,16 @@ class ArrayPrograms(Programs):
         # A5: its turn
         axis_a5_back_up_down = nearest_period(offset_a5 + degrees(radius_q4_back_up, cos_q5_back_up), near_a5)
         r11_from_q123_back_up = r31*cos_q23_back_up - r11_from_q1_back*sin_q23_back_up
-        r21_from_q1234_back_up_down = (
+        scaled_r21_from_q1234_back_up_down = (
             -direction_x_q4_back_up_down*r21_from_q1_back - direction_y_q4_back_up_down*r11_from_q123_back_up
         )
         r12_from_q123_back_up = r32*cos_q23_back_up - r12_from_q1_back*sin_q23_back_up
-        r22_from_q1234_back_up_down = (
+        scaled_r22_from_q1234_back_up_down = (
             -direction_x_q4_back_up_down*r22_from_q1_back - direction_y_q4_back_up_down*r12_from_q123_back_up
         )
         # A6: its turn
         axis_a6_back_up_down = nearest_period(
-            offset_a6 + degrees(r21_from_q1234_back_up_down, r22_from_q1234_back_up_down),
+            offset_a6 + degrees(scaled_r21_from_q1234_back_up_down, scaled_r22_from_q1234_back_up_down),
             near_a6,
         )
         # A4: its turn
@@ -950,15 +951,15 @@ class ArrayPrograms(Programs):
         )
         # A5: its turn
         axis_a5_back_up_up = nearest_period(offset_a5 + degrees(-radius_q4_back_up, cos_q5_back_up), near_a5)
-        r21_from_q1234_back_up_up = (
+        scaled_r21_from_q1234_back_up_up = (
             -direction_x_q4_back_up_up*r21_from_q1_back - direction_y_q4_back_up_up*r11_from_q123_back_up
         )
-        r22_from_q1234_back_up_up = (
+        scaled_r22_from_q1234_back_up_up = (
             -direction_x_q4_back_up_up*r22_from_q1_back - direction_y_q4_back_up_up*r12_from_q123_back_up
         )
         # A6: its turn
         axis_a6_back_up_up = nearest_period(
-            offset_a6 + degrees(r21_from_q1234_back_up_up, r22_from_q1234_back_up_up),
+            offset_a6 + degrees(scaled_r21_from_q1234_back_up_up, scaled_r22_from_q1234_back_up_up),
             near_a6,
         )
         status_front = refused(status, refusal_front)

@@ -119,10 +119,10 @@ class ArrayPrograms(Programs):
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         axis_x = offset_x + x
         axis_y = offset_y + y
-        sin_r = direction_r*heading_across
+        direction_y_r = direction_r*heading_across
         open_r = select(single_r > 0.0, mid_r, ref_r)  # R: where its turn is open
         near_r = select(absolute(turn_r) > 0.0, select(turn_r > 0.0, 360.0*turn_r - 360.0, 360.0*turn_r), open_r)
-        axis_r = nearest_period(offset_r + degrees(sin_r, heading_along), near_r)  # R: its turn
+        axis_r = nearest_period(offset_r + degrees(direction_y_r, heading_along), near_r)  # R: its turn
         return (axis_x, axis_y, axis_r), status
 
     def limits(self, axes: Reals) -> Codes:

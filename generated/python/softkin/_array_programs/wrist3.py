@@ -153,11 +153,11 @@ class ArrayPrograms(OrientationPrograms):
             elsewhere_direction_x_c,
             (ref_c,),
         )
-        r22_before_c = direction_x_c*r22 + direction_y_c*r21
-        sin_a = -direction_x_c*r12 - direction_y_c*r11
+        scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
+        direction_y_a = -direction_x_c*r12 - direction_y_c*r11
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        axis_a = nearest_period(offset_a + degrees(sin_a, r22_before_c), near_a)  # A: its turn
+        axis_a = nearest_period(offset_a + degrees(direction_y_a, scaled_r22_before_c), near_a)  # A: its turn
         c_radius_of_b = radius_c*sigma_hand
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
@@ -302,11 +302,12 @@ class ArrayPrograms(OrientationPrograms):
             elsewhere_direction_x_c_down,
             (ref_c,),
         )
-        r22_before_c_down = direction_x_c_down*r22 + direction_y_c_down*r21
-        sin_a_down = -direction_x_c_down*r12 - direction_y_c_down*r11
+        scaled_r22_before_c_down = direction_x_c_down*r22 + direction_y_c_down*r21
+        direction_y_a_down = -direction_x_c_down*r12 - direction_y_c_down*r11
         open_a = select(single_a > 0.0, mid_a, ref_a)  # A: where its turn is open
         near_a = select(absolute(turn_a) > 0.0, select(turn_a > 0.0, 360.0*turn_a - 360.0, 360.0*turn_a), open_a)
-        axis_a_down = nearest_period(offset_a + degrees(sin_a_down, r22_before_c_down), near_a)  # A: its turn
+        # A: its turn
+        axis_a_down = nearest_period(offset_a + degrees(direction_y_a_down, scaled_r22_before_c_down), near_a)
         open_b = select(single_b > 0.0, mid_b, ref_b)  # B: where its turn is open
         near_b = select(absolute(turn_b) > 0.0, select(turn_b > 0.0, 360.0*turn_b - 360.0, 360.0*turn_b), open_b)
         axis_b_down = nearest_period(offset_b + degrees(radius_c, r33), near_b)  # B: its turn
@@ -314,9 +315,10 @@ class ArrayPrograms(OrientationPrograms):
         near_c = select(absolute(turn_c) > 0.0, select(turn_c > 0.0, 360.0*turn_c - 360.0, 360.0*turn_c), open_c)
         # C: its turn
         axis_c_down = nearest_period(offset_c + degrees(direction_y_c_down, direction_x_c_down), near_c)
-        r22_before_c_up = direction_x_c_up*r22 + direction_y_c_up*r21
-        sin_a_up = -direction_x_c_up*r12 - direction_y_c_up*r11
-        axis_a_up = nearest_period(offset_a + degrees(sin_a_up, r22_before_c_up), near_a)  # A: its turn
+        scaled_r22_before_c_up = direction_x_c_up*r22 + direction_y_c_up*r21
+        direction_y_a_up = -direction_x_c_up*r12 - direction_y_c_up*r11
+        # A: its turn
+        axis_a_up = nearest_period(offset_a + degrees(direction_y_a_up, scaled_r22_before_c_up), near_a)
         axis_b_up = nearest_period(offset_b + degrees(-radius_c, r33), near_b)  # B: its turn
         axis_c_up = nearest_period(offset_c + degrees(direction_y_c_up, direction_x_c_up), near_c)  # C: its turn
         return (

@@ -82,11 +82,11 @@ def branch(
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_q1 = cos(free_a1)
         sin_q1 = sin(free_a1)
+    cos_q5 = r13*sin_q1 - r23*cos_q1
     r21_from_q1 = r21*cos_q1 - r11*sin_q1
     r22_from_q1 = r22*cos_q1 - r12*sin_q1
     radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)
     q6_radius_of_q5 = radius_q6*sigma_wrist
-    cos_q5 = r13*sin_q1 - r23*cos_q1
     if radius_q6 > 1e-11:
         along_q6 = -r21_from_q1*sigma_wrist
         cos_q6_before_q6_of_q3 = along_q6/radius_q6
@@ -96,35 +96,33 @@ def branch(
         free_a6 = (ref_a6 - offset_a6)*DEGREE
         cos_q6_before_q6_of_q3 = cos(free_a6)
         sin_q6_before_q6_of_q3 = sin(free_a6)
+    r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
+    r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5*r33
+    wrist_x_from_q1_before_q6_of_q3 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
+    r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
     wrist_z = z - d6*r33
-    if radius_q6 > 0.1:
+    wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
+    value_q6_of_q3 = (
+        wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+        + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2*a2 - a3*a3
+    )
+    if abs(value_q6_of_q3) <= size_q6_of_q3:
         cos_q6 = cos_q6_before_q6_of_q3
         sin_q6 = sin_q6_before_q6_of_q3
     else:
-        wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
-        wrist_x_from_q1_along = -d5*r31*cos_q5
-        wrist_y_from_q1_fixed = wrist_z - d1
-        wrist_y_from_q1_along = d5*r32
-        wrist_x_from_q1_across = d5*r32*cos_q5
-        wrist_y_from_q1_across = d5*r31
-        wrist_x_from_q1_here = (
-            wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
-            + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
-        )
-        wrist_y_from_q1_here = (
-            wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
-            + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
-        )
-        value_q6_of_q3 = (
-            wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here - a2*a2 - a3*a3
-        )
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if radius_q6 > 0.1 and abs(value_q6_of_q3) > 1.000000001*size_q6_of_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:
+            wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
             along_q6_of_q3 = (
                 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             )
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            wrist_y_from_q1_across = d5*r31
             across_q6_of_q3 = (
                 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )

@@ -160,14 +160,14 @@ def branch(
     r21_from_q1 = r21*cos_q1 - r11*sin_q1
     r11_from_q1 = r11*cos_q1 + r21*sin_q1
     r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-    r21_from_q1234 = -direction_x_q4*r21_from_q1 - direction_y_q4*r11_from_q123
+    scaled_r21_from_q1234 = -direction_x_q4*r21_from_q1 - direction_y_q4*r11_from_q123
     r22_from_q1 = r22*cos_q1 - r12*sin_q1
     r12_from_q1 = r12*cos_q1 + r22*sin_q1
     r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-    r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
+    scaled_r22_from_q1234 = -direction_x_q4*r22_from_q1 - direction_y_q4*r12_from_q123
     open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6
     near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
-    axis_a6 = offset_a6 + arctan2(r21_from_q1234, r22_from_q1234 + 0.0)/DEGREE
+    axis_a6 = offset_a6 + arctan2(scaled_r21_from_q1234, scaled_r22_from_q1234 + 0.0)/DEGREE
     if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
         axis_a6 = nearest_period(axis_a6, near_a6)
     return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)

@@ -50,10 +50,10 @@ def branch(
     axis_x = offset_x + x
     axis_y = offset_y + y
     axis_z = offset_z + z
-    sin_r = direction_r*heading_across
+    direction_y_r = direction_r*heading_across
     open_r = mid_r if single_r > 0.0 else ref_r
     near_r = (360.0*turn_r - 360.0 if turn_r > 0.0 else 360.0*turn_r) if abs(turn_r) > 0.0 else open_r
-    axis_r = offset_r + arctan2(sin_r, heading_along + 0.0)/DEGREE
+    axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE
     if not -180.000000001 <= axis_r - near_r < 179.999999999:
         axis_r = nearest_period(axis_r, near_r)
     return (axis_x, axis_y, axis_z, axis_r)

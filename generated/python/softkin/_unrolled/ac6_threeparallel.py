@@ -57,10 +57,10 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_squared_plus_a3_squared = a2*a2 + a3*a3
     size_q6_of_q3_times_rounding = 1e-12*size_q6_of_q3
-    a2_minus_a3_squared = (a2 - a3)*(a2 - a3)
-    a2_plus_a3_squared = (a2 + a3)*(a2 + a3)
+    constant_part = 1.000000001*size_q6_of_q3
+    a2_plus_a3 = a2 + a3
+    a2_minus_a3 = a2 - a3
     scale_q3_squared = scale_q3*scale_q3
-    constant_part = 9.999999999999999e-23*machine_scale*machine_scale
     offset_a5_times_2 = 2.0*offset_a5
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -132,226 +132,128 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin(free_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down
+        r21_from_q1_before_q56_before_q6_of_q3_down = (
+            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - r33_times_radius_q6
+        )
+        wrist_x_from_q1_before_q6_of_q3 = (
+            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
+        )
         wrist_z = z - d6*r33
-        # moved to where the rest can be reached
-        if radius_q6 > 0.1:
-            cos_q6_down = cos_q6_before_q6_of_q3_down
-            sin_q6_down = sin_q6_before_q6_of_q3_down
-            cos_q6_up = cos_q6_before_q6_of_q3_up
-            sin_q6_up = sin_q6_before_q6_of_q3_up
+        d1_minus_wrist_z = d1 - wrist_z
+        r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
+        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_down - d1_minus_wrist_z
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+        )
+        # kept where the rest can be reached
+        # what the unknown links must span
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
+            cos_q6 = cos_q6_before_q6_of_q3_down
+            sin_q6 = sin_q6_before_q6_of_q3_down
+            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_down
+            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
+            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
+            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
+            wrist_x_from_q1_along = -d5*r31*cos_q5
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_fixed_down = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
-            wrist_x_from_q1_along = -d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            wrist_x_from_q1_here_down = (
-                wrist_x_from_q1_fixed_down + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_down
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_down
-            )
-            wrist_y_from_q1_here_down = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_down
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_down
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_down = (
-                wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
-                - a2_squared_plus_a3_squared
-            )
-            # moved to where the rest can be reached
-            if abs(value_q6_of_q3_down) <= size_q6_of_q3:
-                cos_q6_down = cos_q6_before_q6_of_q3_down
-                sin_q6_down = sin_q6_before_q6_of_q3_down
+            # kept where the rest can be reached
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+                cos_q6 = cos_q6_before_q6_of_q3_down
+                sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                along_q6_of_q3_down = (
+                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+                along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_down
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
-                across_q6_of_q3_down = (
+                across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_down
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
-                swing_q6_of_q3_down = sqrt(
-                    across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
-                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3_down = (
-                        value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
-                        - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
+                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
                     )
-                    highest_q6_of_q3_down = (
+                    highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down
+                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
                         )
                     )
-                    lowest_q6_of_q3_down = (
+                    lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down > 1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down < -1.0
-                            else (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down
+                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
-                    highest_q6_of_q3_down = 1.0
-                    lowest_q6_of_q3_down = -1.0
-                near_q6_of_q3_down = arctan2(
-                    root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)) + 0.0, highest_q6_of_q3_down + 0.0,
-                )
-                far_q6_of_q3_down = arctan2(
-                    root((1.0 - lowest_q6_of_q3_down)*(1.0 + lowest_q6_of_q3_down)) + 0.0, lowest_q6_of_q3_down + 0.0,
-                )
-                centre_q6_of_q3_down = arctan2(across_q6_of_q3_down + 0.0, along_q6_of_q3_down + 0.0)
-                angle_q6_of_q3_down = arctan2(sin_q6_before_q6_of_q3_down + 0.0, cos_q6_before_q6_of_q3_down + 0.0)
-                side_q6_of_q3_down = (
+                    highest_q6_of_q3 = 1.0
+                    lowest_q6_of_q3 = -1.0
+                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
+                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
+                centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
+                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_down + 0.0, cos_q6_before_q6_of_q3_down + 0.0)
+                side_q6_of_q3 = (
                     1.0
-                    if along_q6_of_q3_down*sin_q6_before_q6_of_q3_down - across_q6_of_q3_down*cos_q6_before_q6_of_q3_down >= 0.0
+                    if along_q6_of_q3*sin_q6_before_q6_of_q3_down - across_q6_of_q3*cos_q6_before_q6_of_q3_down >= 0.0
                     else -1.0
                 )
-                moved_q6_of_q3_down = nearest_on_arc(
-                    angle_q6_of_q3_down,
-                    centre_q6_of_q3_down + 0.5*(far_q6_of_q3_down + near_q6_of_q3_down)*side_q6_of_q3_down,
-                    0.5*far_q6_of_q3_down - 0.5*near_q6_of_q3_down,
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
-                cos_q6_after_q6_of_q3_down = cos(moved_q6_of_q3_down)
-                sin_q6_after_q6_of_q3_down = sin(moved_q6_of_q3_down)
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
                 # what the motion changes of the pose
-                cost_q6_of_q3_down = (
+                cost_q6_of_q3 = (
                     sqrt(
                         (
-                            cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down
-                        )*(cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down)
+                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
+                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
                         + (
-                            sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down
-                        )*(sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down)
+                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
                     )
                     *radius_q6
                 )
-                # moved to where the rest can be reached
-                if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_down = cos_q6_before_q6_of_q3_down
-                    sin_q6_down = sin_q6_before_q6_of_q3_down
+                # kept where the rest can be reached
+                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6 = cos_q6_before_q6_of_q3_down
+                    sin_q6 = sin_q6_before_q6_of_q3_down
                 else:
-                    cos_q6_down = cos_q6_after_q6_of_q3_down
-                    sin_q6_down = sin_q6_after_q6_of_q3_down
-            wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
-            wrist_x_from_q1_here_up = (
-                wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_up
-            )
-            wrist_y_from_q1_here_up = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_up
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_up
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_up = (
-                wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
-                - a2_squared_plus_a3_squared
-            )
-            # moved to where the rest can be reached
-            if abs(value_q6_of_q3_up) <= size_q6_of_q3:
-                cos_q6_up = cos_q6_before_q6_of_q3_up
-                sin_q6_up = sin_q6_before_q6_of_q3_up
-            else:
-                along_q6_of_q3_up = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_up
-                )
-                across_q6_of_q3_up = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
-                )
-                swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
-                # the arc: cosines from its centre
-                if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3_up = (
-                        value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
-                        - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
-                    )
-                    highest_q6_of_q3_up = (
-                        1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
-                        else (
-                            -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up
-                        )
-                    )
-                    lowest_q6_of_q3_up = (
-                        1.0
-                        if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up > 1.0
-                        else (
-                            -1.0
-                            if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up < -1.0
-                            else (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up
-                        )
-                    )
-                else:
-                    highest_q6_of_q3_up = 1.0
-                    lowest_q6_of_q3_up = -1.0
-                near_q6_of_q3_up = arctan2(
-                    root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)) + 0.0, highest_q6_of_q3_up + 0.0,
-                )
-                far_q6_of_q3_up = arctan2(
-                    root((1.0 - lowest_q6_of_q3_up)*(1.0 + lowest_q6_of_q3_up)) + 0.0, lowest_q6_of_q3_up + 0.0,
-                )
-                centre_q6_of_q3_up = arctan2(across_q6_of_q3_up + 0.0, along_q6_of_q3_up + 0.0)
-                angle_q6_of_q3_up = arctan2(sin_q6_before_q6_of_q3_up + 0.0, cos_q6_before_q6_of_q3_up + 0.0)
-                side_q6_of_q3_up = (
-                    1.0
-                    if along_q6_of_q3_up*sin_q6_before_q6_of_q3_up - across_q6_of_q3_up*cos_q6_before_q6_of_q3_up >= 0.0
-                    else -1.0
-                )
-                moved_q6_of_q3_up = nearest_on_arc(
-                    angle_q6_of_q3_up, centre_q6_of_q3_up + 0.5*(far_q6_of_q3_up + near_q6_of_q3_up)*side_q6_of_q3_up,
-                    0.5*far_q6_of_q3_up - 0.5*near_q6_of_q3_up,
-                )
-                cos_q6_after_q6_of_q3_up = cos(moved_q6_of_q3_up)
-                sin_q6_after_q6_of_q3_up = sin(moved_q6_of_q3_up)
-                # what the motion changes of the pose
-                cost_q6_of_q3_up = (
-                    sqrt(
-                        (
-                            cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up
-                        )*(cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up)
-                        + (
-                            sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up
-                        )*(sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up)
-                    )
-                    *radius_q6
-                )
-                # moved to where the rest can be reached
-                if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_up = cos_q6_before_q6_of_q3_up
-                    sin_q6_up = sin_q6_before_q6_of_q3_up
-                else:
-                    cos_q6_up = cos_q6_after_q6_of_q3_up
-                    sin_q6_up = sin_q6_after_q6_of_q3_up
-        r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
-        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
-        # what the unknown links must span
-        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
-        d1_minus_wrist_z = d1 - wrist_z
-        r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
-        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
-        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
+                    cos_q6 = cos_q6_after_q6_of_q3
+                    sin_q6 = sin_q6_after_q6_of_q3
+            r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
+            r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
+            wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+            r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
+            wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_down = (
-            (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
         sin_q3 = (sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)
-        if reach_squared > constant_part:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
@@ -382,27 +284,131 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a5_left_down - open_a5 < 179.999999999:
             axis_a5_left_down = nearest_period(axis_a5_left_down, open_a5)
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
-        axis_a6_left_down = offset_a6 + arctan2(sin_q6_down, cos_q6_down + 0.0)/DEGREE  # A6: its turn
+        axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_left_down - open_a6 < 179.999999999:
             axis_a6_left_down = nearest_period(axis_a6_left_down, open_a6)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        r21_from_q1_before_q6 = r31*cos_q6_up - r32*sin_q6_up
+        if radius_q6 > 1e-11:
+            r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
+            r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
+        else:
+            r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up
+            r21_from_q1_before_q56_before_q6_of_q3_up = r33_times_radius_q6 + r21_from_q1_before_q6_before_q6_of_q3*cos_q5
+            r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
+        wrist_x_from_q1_before_q6_of_q3 = (
+            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
+        )
+        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_up - d1_minus_wrist_z
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+        )
+        # kept where the rest can be reached
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
+            cos_q6 = cos_q6_before_q6_of_q3_up
+            sin_q6 = sin_q6_before_q6_of_q3_up
+        else:
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            # kept where the rest can be reached
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+                cos_q6 = cos_q6_before_q6_of_q3_up
+                sin_q6 = sin_q6_before_q6_of_q3_up
+            else:
+                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+                along_q6_of_q3 = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                )
+                across_q6_of_q3 = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
+                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+                # the arc: cosines from its centre
+                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
+                    )
+                    highest_q6_of_q3 = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                    lowest_q6_of_q3 = (
+                        1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                else:
+                    highest_q6_of_q3 = 1.0
+                    lowest_q6_of_q3 = -1.0
+                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
+                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
+                centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
+                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_up + 0.0, cos_q6_before_q6_of_q3_up + 0.0)
+                side_q6_of_q3 = (
+                    1.0
+                    if along_q6_of_q3*sin_q6_before_q6_of_q3_up - across_q6_of_q3*cos_q6_before_q6_of_q3_up >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+                )
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                # what the motion changes of the pose
+                cost_q6_of_q3 = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
+                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
+                        + (
+                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
+                    )
+                    *radius_q6
+                )
+                # kept where the rest can be reached
+                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6 = cos_q6_before_q6_of_q3_up
+                    sin_q6 = sin_q6_before_q6_of_q3_up
+                else:
+                    cos_q6 = cos_q6_after_q6_of_q3
+                    sin_q6 = sin_q6_after_q6_of_q3
+        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
         # what the unknown links must span
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
+        r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
-        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_up = (
-            (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
         sin_q3 = (sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)
-        if reach_squared > constant_part:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
@@ -428,7 +434,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: its turn
         if not -180.000000001 <= axis_a5_left_up - open_a5 < 179.999999999:
             axis_a5_left_up = nearest_period(axis_a5_left_up, open_a5)
-        axis_a6_left_up = offset_a6 + arctan2(sin_q6_up, cos_q6_up + 0.0)/DEGREE  # A6: its turn
+        axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_left_up - open_a6 < 179.999999999:
             axis_a6_left_up = nearest_period(axis_a6_left_up, open_a6)
         axis_a2_left_down_down = offset_a2 + angle_q2_down_down/DEGREE  # A2: its turn
@@ -513,12 +519,29 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin(free_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
-        # moved to where the rest can be reached
-        if radius_q6 > 0.1:
-            cos_q6_down = cos_q6_before_q6_of_q3_down
-            sin_q6_down = sin_q6_before_q6_of_q3_down
-            cos_q6_up = cos_q6_before_q6_of_q3_up
-            sin_q6_up = sin_q6_before_q6_of_q3_up
+        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down
+        r21_from_q1_before_q56_before_q6_of_q3_down = (
+            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - r33_times_radius_q6
+        )
+        wrist_x_from_q1_before_q6_of_q3 = (
+            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
+        )
+        r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
+        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_down - d1_minus_wrist_z
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+        )
+        # kept where the rest can be reached
+        # what the unknown links must span
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
+            cos_q6 = cos_q6_before_q6_of_q3_down
+            sin_q6 = sin_q6_before_q6_of_q3_down
+            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_down
+            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
+            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
+            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
@@ -526,211 +549,96 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_fixed_down = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
             wrist_x_from_q1_along = -d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            wrist_x_from_q1_here_down = (
-                wrist_x_from_q1_fixed_down + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_down
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_down
-            )
-            wrist_y_from_q1_here_down = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_down
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_down
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_down = (
-                wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
-                - a2_squared_plus_a3_squared
-            )
-            # moved to where the rest can be reached
-            if abs(value_q6_of_q3_down) <= size_q6_of_q3:
-                cos_q6_down = cos_q6_before_q6_of_q3_down
-                sin_q6_down = sin_q6_before_q6_of_q3_down
+            # kept where the rest can be reached
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+                cos_q6 = cos_q6_before_q6_of_q3_down
+                sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                along_q6_of_q3_down = (
+                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+                along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_down
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
-                across_q6_of_q3_down = (
+                across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_down
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
-                swing_q6_of_q3_down = sqrt(
-                    across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
-                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3_down = (
-                        value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
-                        - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
+                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
                     )
-                    highest_q6_of_q3_down = (
+                    highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down
+                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
                         )
                     )
-                    lowest_q6_of_q3_down = (
+                    lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down > 1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down < -1.0
-                            else (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down
+                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
-                    highest_q6_of_q3_down = 1.0
-                    lowest_q6_of_q3_down = -1.0
-                near_q6_of_q3_down = arctan2(
-                    root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)) + 0.0, highest_q6_of_q3_down + 0.0,
-                )
-                far_q6_of_q3_down = arctan2(
-                    root((1.0 - lowest_q6_of_q3_down)*(1.0 + lowest_q6_of_q3_down)) + 0.0, lowest_q6_of_q3_down + 0.0,
-                )
-                centre_q6_of_q3_down = arctan2(across_q6_of_q3_down + 0.0, along_q6_of_q3_down + 0.0)
-                angle_q6_of_q3_down = arctan2(sin_q6_before_q6_of_q3_down + 0.0, cos_q6_before_q6_of_q3_down + 0.0)
-                side_q6_of_q3_down = (
+                    highest_q6_of_q3 = 1.0
+                    lowest_q6_of_q3 = -1.0
+                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
+                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
+                centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
+                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_down + 0.0, cos_q6_before_q6_of_q3_down + 0.0)
+                side_q6_of_q3 = (
                     1.0
-                    if along_q6_of_q3_down*sin_q6_before_q6_of_q3_down - across_q6_of_q3_down*cos_q6_before_q6_of_q3_down >= 0.0
+                    if along_q6_of_q3*sin_q6_before_q6_of_q3_down - across_q6_of_q3*cos_q6_before_q6_of_q3_down >= 0.0
                     else -1.0
                 )
-                moved_q6_of_q3_down = nearest_on_arc(
-                    angle_q6_of_q3_down,
-                    centre_q6_of_q3_down + 0.5*(far_q6_of_q3_down + near_q6_of_q3_down)*side_q6_of_q3_down,
-                    0.5*far_q6_of_q3_down - 0.5*near_q6_of_q3_down,
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
-                cos_q6_after_q6_of_q3_down = cos(moved_q6_of_q3_down)
-                sin_q6_after_q6_of_q3_down = sin(moved_q6_of_q3_down)
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
                 # what the motion changes of the pose
-                cost_q6_of_q3_down = (
+                cost_q6_of_q3 = (
                     sqrt(
                         (
-                            cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down
-                        )*(cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down)
+                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
+                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
                         + (
-                            sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down
-                        )*(sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down)
+                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
                     )
                     *radius_q6
                 )
-                # moved to where the rest can be reached
-                if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_down = cos_q6_before_q6_of_q3_down
-                    sin_q6_down = sin_q6_before_q6_of_q3_down
+                # kept where the rest can be reached
+                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6 = cos_q6_before_q6_of_q3_down
+                    sin_q6 = sin_q6_before_q6_of_q3_down
                 else:
-                    cos_q6_down = cos_q6_after_q6_of_q3_down
-                    sin_q6_down = sin_q6_after_q6_of_q3_down
-            wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
-            wrist_x_from_q1_here_up = (
-                wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_up
-            )
-            wrist_y_from_q1_here_up = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_up
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_up
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_up = (
-                wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
-                - a2_squared_plus_a3_squared
-            )
-            # moved to where the rest can be reached
-            if abs(value_q6_of_q3_up) <= size_q6_of_q3:
-                cos_q6_up = cos_q6_before_q6_of_q3_up
-                sin_q6_up = sin_q6_before_q6_of_q3_up
-            else:
-                along_q6_of_q3_up = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_up
-                )
-                across_q6_of_q3_up = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
-                )
-                swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
-                # the arc: cosines from its centre
-                if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3_up = (
-                        value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
-                        - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
-                    )
-                    highest_q6_of_q3_up = (
-                        1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
-                        else (
-                            -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up
-                        )
-                    )
-                    lowest_q6_of_q3_up = (
-                        1.0
-                        if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up > 1.0
-                        else (
-                            -1.0
-                            if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up < -1.0
-                            else (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up
-                        )
-                    )
-                else:
-                    highest_q6_of_q3_up = 1.0
-                    lowest_q6_of_q3_up = -1.0
-                near_q6_of_q3_up = arctan2(
-                    root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)) + 0.0, highest_q6_of_q3_up + 0.0,
-                )
-                far_q6_of_q3_up = arctan2(
-                    root((1.0 - lowest_q6_of_q3_up)*(1.0 + lowest_q6_of_q3_up)) + 0.0, lowest_q6_of_q3_up + 0.0,
-                )
-                centre_q6_of_q3_up = arctan2(across_q6_of_q3_up + 0.0, along_q6_of_q3_up + 0.0)
-                angle_q6_of_q3_up = arctan2(sin_q6_before_q6_of_q3_up + 0.0, cos_q6_before_q6_of_q3_up + 0.0)
-                side_q6_of_q3_up = (
-                    1.0
-                    if along_q6_of_q3_up*sin_q6_before_q6_of_q3_up - across_q6_of_q3_up*cos_q6_before_q6_of_q3_up >= 0.0
-                    else -1.0
-                )
-                moved_q6_of_q3_up = nearest_on_arc(
-                    angle_q6_of_q3_up, centre_q6_of_q3_up + 0.5*(far_q6_of_q3_up + near_q6_of_q3_up)*side_q6_of_q3_up,
-                    0.5*far_q6_of_q3_up - 0.5*near_q6_of_q3_up,
-                )
-                cos_q6_after_q6_of_q3_up = cos(moved_q6_of_q3_up)
-                sin_q6_after_q6_of_q3_up = sin(moved_q6_of_q3_up)
-                # what the motion changes of the pose
-                cost_q6_of_q3_up = (
-                    sqrt(
-                        (
-                            cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up
-                        )*(cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up)
-                        + (
-                            sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up
-                        )*(sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up)
-                    )
-                    *radius_q6
-                )
-                # moved to where the rest can be reached
-                if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_up = cos_q6_before_q6_of_q3_up
-                    sin_q6_up = sin_q6_before_q6_of_q3_up
-                else:
-                    cos_q6_up = cos_q6_after_q6_of_q3_up
-                    sin_q6_up = sin_q6_after_q6_of_q3_up
-        r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
-        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
-        # what the unknown links must span
-        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
-        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
-        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
+                    cos_q6 = cos_q6_after_q6_of_q3
+                    sin_q6 = sin_q6_after_q6_of_q3
+            r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
+            r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
+            wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+            r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
+            wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_down = (
-            (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
         sin_q3 = (sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)
-        if reach_squared > constant_part:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
@@ -756,26 +664,130 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_right_down - open_a5 < 179.999999999:
             axis_a5_right_down = nearest_period(axis_a5_right_down, open_a5)
-        axis_a6_right_down = offset_a6 + arctan2(sin_q6_down, cos_q6_down + 0.0)/DEGREE  # A6: its turn
+        axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_right_down - open_a6 < 179.999999999:
             axis_a6_right_down = nearest_period(axis_a6_right_down, open_a6)
         axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        r21_from_q1_before_q6 = r31*cos_q6_up - r32*sin_q6_up
+        if radius_q6 > 1e-11:
+            r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
+            r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
+        else:
+            r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up
+            r21_from_q1_before_q56_before_q6_of_q3_up = r33_times_radius_q6 + r21_from_q1_before_q6_before_q6_of_q3*cos_q5
+            r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
+        wrist_x_from_q1_before_q6_of_q3 = (
+            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
+        )
+        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_up - d1_minus_wrist_z
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+        )
+        # kept where the rest can be reached
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
+            cos_q6 = cos_q6_before_q6_of_q3_up
+            sin_q6 = sin_q6_before_q6_of_q3_up
+        else:
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            # kept where the rest can be reached
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+                cos_q6 = cos_q6_before_q6_of_q3_up
+                sin_q6 = sin_q6_before_q6_of_q3_up
+            else:
+                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+                along_q6_of_q3 = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                )
+                across_q6_of_q3 = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
+                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+                # the arc: cosines from its centre
+                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
+                    )
+                    highest_q6_of_q3 = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                    lowest_q6_of_q3 = (
+                        1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                else:
+                    highest_q6_of_q3 = 1.0
+                    lowest_q6_of_q3 = -1.0
+                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
+                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
+                centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
+                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_up + 0.0, cos_q6_before_q6_of_q3_up + 0.0)
+                side_q6_of_q3 = (
+                    1.0
+                    if along_q6_of_q3*sin_q6_before_q6_of_q3_up - across_q6_of_q3*cos_q6_before_q6_of_q3_up >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+                )
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                # what the motion changes of the pose
+                cost_q6_of_q3 = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
+                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
+                        + (
+                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
+                    )
+                    *radius_q6
+                )
+                # kept where the rest can be reached
+                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6 = cos_q6_before_q6_of_q3_up
+                    sin_q6 = sin_q6_before_q6_of_q3_up
+                else:
+                    cos_q6 = cos_q6_after_q6_of_q3
+                    sin_q6 = sin_q6_after_q6_of_q3
+        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
         # what the unknown links must span
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
+        r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
-        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
         sine_square_q3_up = (
-            (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
         sin_q3 = (sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)
-        if reach_squared > constant_part:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
@@ -801,7 +813,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down  # A5: its turn
         if not -180.000000001 <= axis_a5_right_up - open_a5 < 179.999999999:
             axis_a5_right_up = nearest_period(axis_a5_right_up, open_a5)
-        axis_a6_right_up = offset_a6 + arctan2(sin_q6_up, cos_q6_up + 0.0)/DEGREE  # A6: its turn
+        axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_right_up - open_a6 < 179.999999999:
             axis_a6_right_up = nearest_period(axis_a6_right_up, open_a6)
         axis_a2_right_down_down = offset_a2 + angle_q2_down_down/DEGREE  # A2: its turn
@@ -984,224 +996,130 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin(free_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
+        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down
+        r21_from_q1_before_q56_before_q6_of_q3_down = (
+            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - r33_times_radius_q6
+        )
+        wrist_x_from_q1_before_q6_of_q3 = (
+            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
+        )
         wrist_z = z - d6*r33
-        # moved to where the rest can be reached
-        if radius_q6 > 0.1:
-            cos_q6_down = cos_q6_before_q6_of_q3_down
-            sin_q6_down = sin_q6_before_q6_of_q3_down
-            cos_q6_up = cos_q6_before_q6_of_q3_up
-            sin_q6_up = sin_q6_before_q6_of_q3_up
+        d1_minus_wrist_z = d1 - wrist_z
+        r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
+        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_down - d1_minus_wrist_z
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+        )
+        # kept where the rest can be reached
+        # what the unknown links must span
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
+            cos_q6 = cos_q6_before_q6_of_q3_down
+            sin_q6 = sin_q6_before_q6_of_q3_down
+            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_down
+            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
+            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
+            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
+            wrist_x_from_q1_along = -d5*r31*cos_q5
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_fixed_down = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
-            wrist_x_from_q1_along = -d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            wrist_x_from_q1_here_down = (
-                wrist_x_from_q1_fixed_down + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_down
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_down
-            )
-            wrist_y_from_q1_here_down = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_down
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_down
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_down = (
-                wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
-                - a2_squared_plus_a3_squared
-            )
-            # moved to where the rest can be reached
-            if abs(value_q6_of_q3_down) <= size_q6_of_q3:
-                cos_q6_down = cos_q6_before_q6_of_q3_down
-                sin_q6_down = sin_q6_before_q6_of_q3_down
+            # kept where the rest can be reached
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+                cos_q6 = cos_q6_before_q6_of_q3_down
+                sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                along_q6_of_q3_down = (
+                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+                along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_down
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
-                across_q6_of_q3_down = (
+                across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_down
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
-                swing_q6_of_q3_down = sqrt(
-                    across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
-                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3_down = (
-                        value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
-                        - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
+                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
                     )
-                    highest_q6_of_q3_down = (
+                    highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down
+                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
                         )
                     )
-                    lowest_q6_of_q3_down = (
+                    lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down > 1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down < -1.0
-                            else (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down
+                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
-                    highest_q6_of_q3_down = 1.0
-                    lowest_q6_of_q3_down = -1.0
-                near_q6_of_q3_down = arctan2(
-                    root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)),
-                    highest_q6_of_q3_down,
-                )
-                far_q6_of_q3_down = arctan2(
-                    root((1.0 - lowest_q6_of_q3_down)*(1.0 + lowest_q6_of_q3_down)),
-                    lowest_q6_of_q3_down,
-                )
-                centre_q6_of_q3_down = arctan2(across_q6_of_q3_down, along_q6_of_q3_down)
-                angle_q6_of_q3_down = arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down)
-                side_q6_of_q3_down = (
+                    highest_q6_of_q3 = 1.0
+                    lowest_q6_of_q3 = -1.0
+                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
+                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
+                centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
+                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down)
+                side_q6_of_q3 = (
                     1.0
-                    if along_q6_of_q3_down*sin_q6_before_q6_of_q3_down - across_q6_of_q3_down*cos_q6_before_q6_of_q3_down >= 0.0
+                    if along_q6_of_q3*sin_q6_before_q6_of_q3_down - across_q6_of_q3*cos_q6_before_q6_of_q3_down >= 0.0
                     else -1.0
                 )
-                moved_q6_of_q3_down = nearest_on_arc(
-                    angle_q6_of_q3_down,
-                    centre_q6_of_q3_down + 0.5*(far_q6_of_q3_down + near_q6_of_q3_down)*side_q6_of_q3_down,
-                    0.5*far_q6_of_q3_down - 0.5*near_q6_of_q3_down,
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
-                cos_q6_after_q6_of_q3_down = cos(moved_q6_of_q3_down)
-                sin_q6_after_q6_of_q3_down = sin(moved_q6_of_q3_down)
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
                 # what the motion changes of the pose
-                cost_q6_of_q3_down = (
+                cost_q6_of_q3 = (
                     sqrt(
                         (
-                            cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down
-                        )*(cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down)
+                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
+                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
                         + (
-                            sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down
-                        )*(sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down)
+                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
                     )
                     *radius_q6
                 )
-                # moved to where the rest can be reached
-                if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_down = cos_q6_before_q6_of_q3_down
-                    sin_q6_down = sin_q6_before_q6_of_q3_down
+                # kept where the rest can be reached
+                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6 = cos_q6_before_q6_of_q3_down
+                    sin_q6 = sin_q6_before_q6_of_q3_down
                 else:
-                    cos_q6_down = cos_q6_after_q6_of_q3_down
-                    sin_q6_down = sin_q6_after_q6_of_q3_down
-            wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
-            wrist_x_from_q1_here_up = (
-                wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_up
-            )
-            wrist_y_from_q1_here_up = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_up
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_up
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_up = (
-                wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
-                - a2_squared_plus_a3_squared
-            )
-            # moved to where the rest can be reached
-            if abs(value_q6_of_q3_up) <= size_q6_of_q3:
-                cos_q6_up = cos_q6_before_q6_of_q3_up
-                sin_q6_up = sin_q6_before_q6_of_q3_up
-            else:
-                along_q6_of_q3_up = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_up
-                )
-                across_q6_of_q3_up = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
-                )
-                swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
-                # the arc: cosines from its centre
-                if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3_up = (
-                        value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
-                        - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
-                    )
-                    highest_q6_of_q3_up = (
-                        1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
-                        else (
-                            -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up
-                        )
-                    )
-                    lowest_q6_of_q3_up = (
-                        1.0
-                        if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up > 1.0
-                        else (
-                            -1.0
-                            if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up < -1.0
-                            else (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up
-                        )
-                    )
-                else:
-                    highest_q6_of_q3_up = 1.0
-                    lowest_q6_of_q3_up = -1.0
-                near_q6_of_q3_up = arctan2(root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)), highest_q6_of_q3_up)
-                far_q6_of_q3_up = arctan2(root((1.0 - lowest_q6_of_q3_up)*(1.0 + lowest_q6_of_q3_up)), lowest_q6_of_q3_up)
-                centre_q6_of_q3_up = arctan2(across_q6_of_q3_up, along_q6_of_q3_up)
-                angle_q6_of_q3_up = arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up)
-                side_q6_of_q3_up = (
-                    1.0
-                    if along_q6_of_q3_up*sin_q6_before_q6_of_q3_up - across_q6_of_q3_up*cos_q6_before_q6_of_q3_up >= 0.0
-                    else -1.0
-                )
-                moved_q6_of_q3_up = nearest_on_arc(
-                    angle_q6_of_q3_up, centre_q6_of_q3_up + 0.5*(far_q6_of_q3_up + near_q6_of_q3_up)*side_q6_of_q3_up,
-                    0.5*far_q6_of_q3_up - 0.5*near_q6_of_q3_up,
-                )
-                cos_q6_after_q6_of_q3_up = cos(moved_q6_of_q3_up)
-                sin_q6_after_q6_of_q3_up = sin(moved_q6_of_q3_up)
-                # what the motion changes of the pose
-                cost_q6_of_q3_up = (
-                    sqrt(
-                        (
-                            cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up
-                        )*(cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up)
-                        + (
-                            sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up
-                        )*(sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up)
-                    )
-                    *radius_q6
-                )
-                # moved to where the rest can be reached
-                if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_up = cos_q6_before_q6_of_q3_up
-                    sin_q6_up = sin_q6_before_q6_of_q3_up
-                else:
-                    cos_q6_up = cos_q6_after_q6_of_q3_up
-                    sin_q6_up = sin_q6_after_q6_of_q3_up
-        r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
-        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
-        # what the unknown links must span
-        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
-        d1_minus_wrist_z = d1 - wrist_z
-        r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
-        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+                    cos_q6 = cos_q6_after_q6_of_q3
+                    sin_q6 = sin_q6_after_q6_of_q3
+            r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
+            r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
+            wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+            r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
+            wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3 = (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+        )
         refusal_left_down = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left)*RADIAN  # A1: its turn
-        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        if reach_squared > constant_part:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
@@ -1220,20 +1138,126 @@ def unrolled(k: Constants) -> Unrolled:
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)*RADIAN
         axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN  # A5: its turn
-        axis_a6_left_down = offset_a6 + arctan2(sin_q6_down, cos_q6_down)*RADIAN  # A6: its turn
-        r21_from_q1_before_q6 = r31*cos_q6_up - r32*sin_q6_up
+        axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN  # A6: its turn
+        if radius_q6 > 1e-11:
+            r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
+            r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
+        else:
+            r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up
+            r21_from_q1_before_q56_before_q6_of_q3_up = r33_times_radius_q6 + r21_from_q1_before_q6_before_q6_of_q3*cos_q5
+            r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
+        wrist_x_from_q1_before_q6_of_q3 = (
+            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
+        )
+        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_up - d1_minus_wrist_z
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+        )
+        # kept where the rest can be reached
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
+            cos_q6 = cos_q6_before_q6_of_q3_up
+            sin_q6 = sin_q6_before_q6_of_q3_up
+        else:
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            # kept where the rest can be reached
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+                cos_q6 = cos_q6_before_q6_of_q3_up
+                sin_q6 = sin_q6_before_q6_of_q3_up
+            else:
+                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+                along_q6_of_q3 = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                )
+                across_q6_of_q3 = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
+                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+                # the arc: cosines from its centre
+                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
+                    )
+                    highest_q6_of_q3 = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                    lowest_q6_of_q3 = (
+                        1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                else:
+                    highest_q6_of_q3 = 1.0
+                    lowest_q6_of_q3 = -1.0
+                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
+                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
+                centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
+                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up)
+                side_q6_of_q3 = (
+                    1.0
+                    if along_q6_of_q3*sin_q6_before_q6_of_q3_up - across_q6_of_q3*cos_q6_before_q6_of_q3_up >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+                )
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                # what the motion changes of the pose
+                cost_q6_of_q3 = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
+                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
+                        + (
+                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
+                    )
+                    *radius_q6
+                )
+                # kept where the rest can be reached
+                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6 = cos_q6_before_q6_of_q3_up
+                    sin_q6 = sin_q6_before_q6_of_q3_up
+                else:
+                    cos_q6 = cos_q6_after_q6_of_q3
+                    sin_q6 = sin_q6_after_q6_of_q3
+        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
         # what the unknown links must span
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
+        r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3 = (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+        )
         refusal_left_up = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        if reach_squared > constant_part:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
@@ -1252,7 +1276,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)*RADIAN
         axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: its turn
-        axis_a6_left_up = offset_a6 + arctan2(sin_q6_up, cos_q6_up)*RADIAN  # A6: its turn
+        axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN  # A6: its turn
         axis_a2_left_down_down = offset_a2 + angle_q2_down_down*RADIAN  # A2: its turn
         axis_a3_left_down_down = offset_a3 - part_of_axis_a3_left_up_down  # A3: its turn
         # q4: what the sum q234 leaves; A4: its turn
@@ -1279,12 +1303,29 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin(free_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
-        # moved to where the rest can be reached
-        if radius_q6 > 0.1:
-            cos_q6_down = cos_q6_before_q6_of_q3_down
-            sin_q6_down = sin_q6_before_q6_of_q3_down
-            cos_q6_up = cos_q6_before_q6_of_q3_up
-            sin_q6_up = sin_q6_before_q6_of_q3_up
+        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down
+        r21_from_q1_before_q56_before_q6_of_q3_down = (
+            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - r33_times_radius_q6
+        )
+        wrist_x_from_q1_before_q6_of_q3 = (
+            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
+        )
+        r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
+        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_down - d1_minus_wrist_z
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+        )
+        # kept where the rest can be reached
+        # what the unknown links must span
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
+            cos_q6 = cos_q6_before_q6_of_q3_down
+            sin_q6 = sin_q6_before_q6_of_q3_down
+            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_down
+            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
+            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
+            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
@@ -1292,209 +1333,98 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_fixed_down = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
             wrist_x_from_q1_along = -d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
-            wrist_x_from_q1_here_down = (
-                wrist_x_from_q1_fixed_down + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_down
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_down
-            )
-            wrist_y_from_q1_here_down = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_down
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_down
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_down = (
-                wrist_x_from_q1_here_down*wrist_x_from_q1_here_down + wrist_y_from_q1_here_down*wrist_y_from_q1_here_down
-                - a2_squared_plus_a3_squared
-            )
-            # moved to where the rest can be reached
-            if abs(value_q6_of_q3_down) <= size_q6_of_q3:
-                cos_q6_down = cos_q6_before_q6_of_q3_down
-                sin_q6_down = sin_q6_before_q6_of_q3_down
+            # kept where the rest can be reached
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+                cos_q6 = cos_q6_before_q6_of_q3_down
+                sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                along_q6_of_q3_down = (
+                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+                along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_down
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
-                across_q6_of_q3_down = (
+                across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_down
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
                 )
-                swing_q6_of_q3_down = sqrt(
-                    across_q6_of_q3_down*across_q6_of_q3_down + along_q6_of_q3_down*along_q6_of_q3_down
-                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3_down > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3_down = (
-                        value_q6_of_q3_down - across_q6_of_q3_down*sin_q6_before_q6_of_q3_down
-                        - along_q6_of_q3_down*cos_q6_before_q6_of_q3_down
+                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
                     )
-                    highest_q6_of_q3_down = (
+                    highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down > 1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3_down)/swing_q6_of_q3_down
+                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
                         )
                     )
-                    lowest_q6_of_q3_down = (
+                    lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down > 1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down < -1.0
-                            else (-level_q6_of_q3_down - size_q6_of_q3)/swing_q6_of_q3_down
+                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
-                    highest_q6_of_q3_down = 1.0
-                    lowest_q6_of_q3_down = -1.0
-                near_q6_of_q3_down = arctan2(
-                    root((1.0 - highest_q6_of_q3_down)*(1.0 + highest_q6_of_q3_down)),
-                    highest_q6_of_q3_down,
-                )
-                far_q6_of_q3_down = arctan2(
-                    root((1.0 - lowest_q6_of_q3_down)*(1.0 + lowest_q6_of_q3_down)),
-                    lowest_q6_of_q3_down,
-                )
-                centre_q6_of_q3_down = arctan2(across_q6_of_q3_down, along_q6_of_q3_down)
-                angle_q6_of_q3_down = arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down)
-                side_q6_of_q3_down = (
+                    highest_q6_of_q3 = 1.0
+                    lowest_q6_of_q3 = -1.0
+                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
+                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
+                centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
+                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down)
+                side_q6_of_q3 = (
                     1.0
-                    if along_q6_of_q3_down*sin_q6_before_q6_of_q3_down - across_q6_of_q3_down*cos_q6_before_q6_of_q3_down >= 0.0
+                    if along_q6_of_q3*sin_q6_before_q6_of_q3_down - across_q6_of_q3*cos_q6_before_q6_of_q3_down >= 0.0
                     else -1.0
                 )
-                moved_q6_of_q3_down = nearest_on_arc(
-                    angle_q6_of_q3_down,
-                    centre_q6_of_q3_down + 0.5*(far_q6_of_q3_down + near_q6_of_q3_down)*side_q6_of_q3_down,
-                    0.5*far_q6_of_q3_down - 0.5*near_q6_of_q3_down,
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
-                cos_q6_after_q6_of_q3_down = cos(moved_q6_of_q3_down)
-                sin_q6_after_q6_of_q3_down = sin(moved_q6_of_q3_down)
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
                 # what the motion changes of the pose
-                cost_q6_of_q3_down = (
+                cost_q6_of_q3 = (
                     sqrt(
                         (
-                            cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down
-                        )*(cos_q6_after_q6_of_q3_down - cos_q6_before_q6_of_q3_down)
+                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down
+                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_down)
                         + (
-                            sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down
-                        )*(sin_q6_after_q6_of_q3_down - sin_q6_before_q6_of_q3_down)
+                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down
+                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_down)
                     )
                     *radius_q6
                 )
-                # moved to where the rest can be reached
-                if cost_q6_of_q3_down > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_down = cos_q6_before_q6_of_q3_down
-                    sin_q6_down = sin_q6_before_q6_of_q3_down
+                # kept where the rest can be reached
+                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6 = cos_q6_before_q6_of_q3_down
+                    sin_q6 = sin_q6_before_q6_of_q3_down
                 else:
-                    cos_q6_down = cos_q6_after_q6_of_q3_down
-                    sin_q6_down = sin_q6_after_q6_of_q3_down
-            wrist_x_from_q1_fixed_up = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
-            wrist_x_from_q1_here_up = (
-                wrist_x_from_q1_fixed_up + wrist_x_from_q1_along*cos_q6_before_q6_of_q3_up
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3_up
-            )
-            wrist_y_from_q1_here_up = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3_up
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3_up
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3_up = (
-                wrist_x_from_q1_here_up*wrist_x_from_q1_here_up + wrist_y_from_q1_here_up*wrist_y_from_q1_here_up
-                - a2_squared_plus_a3_squared
-            )
-            # moved to where the rest can be reached
-            if abs(value_q6_of_q3_up) <= size_q6_of_q3:
-                cos_q6_up = cos_q6_before_q6_of_q3_up
-                sin_q6_up = sin_q6_before_q6_of_q3_up
-            else:
-                along_q6_of_q3_up = (
-                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed_up
-                )
-                across_q6_of_q3_up = (
-                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed_up
-                )
-                swing_q6_of_q3_up = sqrt(across_q6_of_q3_up*across_q6_of_q3_up + along_q6_of_q3_up*along_q6_of_q3_up)
-                # the arc: cosines from its centre
-                if swing_q6_of_q3_up > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3_up = (
-                        value_q6_of_q3_up - across_q6_of_q3_up*sin_q6_before_q6_of_q3_up
-                        - along_q6_of_q3_up*cos_q6_before_q6_of_q3_up
-                    )
-                    highest_q6_of_q3_up = (
-                        1.0
-                        if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up > 1.0
-                        else (
-                            -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3_up)/swing_q6_of_q3_up
-                        )
-                    )
-                    lowest_q6_of_q3_up = (
-                        1.0
-                        if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up > 1.0
-                        else (
-                            -1.0
-                            if (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up < -1.0
-                            else (-level_q6_of_q3_up - size_q6_of_q3)/swing_q6_of_q3_up
-                        )
-                    )
-                else:
-                    highest_q6_of_q3_up = 1.0
-                    lowest_q6_of_q3_up = -1.0
-                near_q6_of_q3_up = arctan2(root((1.0 - highest_q6_of_q3_up)*(1.0 + highest_q6_of_q3_up)), highest_q6_of_q3_up)
-                far_q6_of_q3_up = arctan2(root((1.0 - lowest_q6_of_q3_up)*(1.0 + lowest_q6_of_q3_up)), lowest_q6_of_q3_up)
-                centre_q6_of_q3_up = arctan2(across_q6_of_q3_up, along_q6_of_q3_up)
-                angle_q6_of_q3_up = arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up)
-                side_q6_of_q3_up = (
-                    1.0
-                    if along_q6_of_q3_up*sin_q6_before_q6_of_q3_up - across_q6_of_q3_up*cos_q6_before_q6_of_q3_up >= 0.0
-                    else -1.0
-                )
-                moved_q6_of_q3_up = nearest_on_arc(
-                    angle_q6_of_q3_up, centre_q6_of_q3_up + 0.5*(far_q6_of_q3_up + near_q6_of_q3_up)*side_q6_of_q3_up,
-                    0.5*far_q6_of_q3_up - 0.5*near_q6_of_q3_up,
-                )
-                cos_q6_after_q6_of_q3_up = cos(moved_q6_of_q3_up)
-                sin_q6_after_q6_of_q3_up = sin(moved_q6_of_q3_up)
-                # what the motion changes of the pose
-                cost_q6_of_q3_up = (
-                    sqrt(
-                        (
-                            cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up
-                        )*(cos_q6_after_q6_of_q3_up - cos_q6_before_q6_of_q3_up)
-                        + (
-                            sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up
-                        )*(sin_q6_after_q6_of_q3_up - sin_q6_before_q6_of_q3_up)
-                    )
-                    *radius_q6
-                )
-                # moved to where the rest can be reached
-                if cost_q6_of_q3_up > 1e-12 and radius_q6 > 1e-11:
-                    cos_q6_up = cos_q6_before_q6_of_q3_up
-                    sin_q6_up = sin_q6_before_q6_of_q3_up
-                else:
-                    cos_q6_up = cos_q6_after_q6_of_q3_up
-                    sin_q6_up = sin_q6_after_q6_of_q3_up
-        r21_from_q1_before_q6 = r31*cos_q6_down - r32*sin_q6_down
-        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
-        # what the unknown links must span
-        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32*cos_q6_down + r31*sin_q6_down
-        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+                    cos_q6 = cos_q6_after_q6_of_q3
+                    sin_q6 = sin_q6_after_q6_of_q3
+            r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
+            r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
+            wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+            r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
+            wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3 = (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+        )
         refusal_right_down = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right)*RADIAN  # A1: its turn
-        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        if reach_squared > constant_part:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
@@ -1513,20 +1443,126 @@ def unrolled(k: Constants) -> Unrolled:
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)*RADIAN
         axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN  # A5: its turn
-        axis_a6_right_down = offset_a6 + arctan2(sin_q6_down, cos_q6_down)*RADIAN  # A6: its turn
-        r21_from_q1_before_q6 = r31*cos_q6_up - r32*sin_q6_up
+        axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN  # A6: its turn
+        if radius_q6 > 1e-11:
+            r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
+            r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
+        else:
+            r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up
+            r21_from_q1_before_q56_before_q6_of_q3_up = r33_times_radius_q6 + r21_from_q1_before_q6_before_q6_of_q3*cos_q5
+            r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
+        wrist_x_from_q1_before_q6_of_q3 = (
+            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
+        )
+        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_up - d1_minus_wrist_z
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+        )
+        # kept where the rest can be reached
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
+            cos_q6 = cos_q6_before_q6_of_q3_up
+            sin_q6 = sin_q6_before_q6_of_q3_up
+        else:
+            wrist_y_from_q1_fixed = wrist_z - d1
+            wrist_y_from_q1_along = d5*r32
+            wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
+            wrist_y_from_q1_across = d5*r31
+            wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
+            d5_times_r33_times_radius_q6 = d5*r33*radius_q6
+            wrist_x_from_q1_along = -d5*r31*cos_q5
+            wrist_x_from_q1_across = d5*r32*cos_q5
+            # kept where the rest can be reached
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+                cos_q6 = cos_q6_before_q6_of_q3_up
+                sin_q6 = sin_q6_before_q6_of_q3_up
+            else:
+                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+                along_q6_of_q3 = (
+                    wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                )
+                across_q6_of_q3 = (
+                    wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
+                    + 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed
+                )
+                swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
+                # the arc: cosines from its centre
+                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                    level_q6_of_q3 = (
+                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
+                    )
+                    highest_q6_of_q3 = (
+                        1.0
+                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                    lowest_q6_of_q3 = (
+                        1.0
+                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                        )
+                    )
+                else:
+                    highest_q6_of_q3 = 1.0
+                    lowest_q6_of_q3 = -1.0
+                near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
+                far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
+                centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
+                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up)
+                side_q6_of_q3 = (
+                    1.0
+                    if along_q6_of_q3*sin_q6_before_q6_of_q3_up - across_q6_of_q3*cos_q6_before_q6_of_q3_up >= 0.0
+                    else -1.0
+                )
+                moved_q6_of_q3 = nearest_on_arc(
+                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
+                )
+                cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
+                sin_q6_after_q6_of_q3 = sin(moved_q6_of_q3)
+                # what the motion changes of the pose
+                cost_q6_of_q3 = (
+                    sqrt(
+                        (
+                            cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up
+                        )*(cos_q6_after_q6_of_q3 - cos_q6_before_q6_of_q3_up)
+                        + (
+                            sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up
+                        )*(sin_q6_after_q6_of_q3 - sin_q6_before_q6_of_q3_up)
+                    )
+                    *radius_q6
+                )
+                # kept where the rest can be reached
+                if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
+                    cos_q6 = cos_q6_before_q6_of_q3_up
+                    sin_q6 = sin_q6_before_q6_of_q3_up
+                else:
+                    cos_q6 = cos_q6_after_q6_of_q3
+                    sin_q6 = sin_q6_after_q6_of_q3
+        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
         # what the unknown links must span
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32*cos_q6_up + r31*sin_q6_up
+        r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3 = (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+        )
         refusal_right_up = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        if reach_squared > constant_part:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
@@ -1545,7 +1581,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q4: what the sum q234 leaves; A4: its turn
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)*RADIAN
         axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down  # A5: its turn
-        axis_a6_right_up = offset_a6 + arctan2(sin_q6_up, cos_q6_up)*RADIAN  # A6: its turn
+        axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN  # A6: its turn
         axis_a2_right_down_down = offset_a2 + angle_q2_down_down*RADIAN  # A2: its turn
         axis_a3_right_down_down = offset_a3 - part_of_axis_a3_right_up_down  # A3: its turn
         # q4: what the sum q234 leaves; A4: its turn
@@ -1645,11 +1681,11 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
+        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
         q6_radius_of_q5 = radius_q6*sigma_wrist
-        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         # its reference where it is free
         if radius_q6 > 1e-11:
             along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
@@ -1660,39 +1696,41 @@ def unrolled(k: Constants) -> Unrolled:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3 = cos(free_a6)
             sin_q6_before_q6_of_q3 = sin(free_a6)
+        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
+        r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5*r33
+        wrist_x_from_q1_before_q6_of_q3 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
+        r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
         wrist_z = z - d6*r33
-        # moved to where the rest can be reached
-        if radius_q6 > 0.1:
+        wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
+        # a later step needs this of q6: no larger in size than
+        value_q6_of_q3 = (
+            wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
+            + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
+        )
+        # kept where the rest can be reached
+        # what the unknown links must span
+        if abs(value_q6_of_q3) <= size_q6_of_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
+            r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3
+            wrist_x_from_q1 = wrist_x_from_q1_before_q6_of_q3
+            r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3
+            wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
-            wrist_x_from_q1_along = -d5*r31*cos_q5
-            wrist_y_from_q1_fixed = wrist_z - d1
-            wrist_y_from_q1_along = d5*r32
-            wrist_x_from_q1_across = d5*r32*cos_q5
-            wrist_y_from_q1_across = d5*r31
-            wrist_x_from_q1_here = (
-                wrist_x_from_q1_fixed + wrist_x_from_q1_along*cos_q6_before_q6_of_q3
-                + wrist_x_from_q1_across*sin_q6_before_q6_of_q3
-            )
-            wrist_y_from_q1_here = (
-                wrist_y_from_q1_fixed + wrist_y_from_q1_along*cos_q6_before_q6_of_q3
-                + wrist_y_from_q1_across*sin_q6_before_q6_of_q3
-            )
-            # a later step needs this of q6: no larger in size than
-            value_q6_of_q3 = (
-                wrist_x_from_q1_here*wrist_x_from_q1_here + wrist_y_from_q1_here*wrist_y_from_q1_here
-                - a2_squared_plus_a3_squared
-            )
-            # moved to where the rest can be reached
-            if abs(value_q6_of_q3) <= size_q6_of_q3:
+            # kept where the rest can be reached
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
+                wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+                wrist_x_from_q1_along = -d5*r31*cos_q5
+                wrist_y_from_q1_fixed = wrist_z - d1
+                wrist_y_from_q1_along = d5*r32
                 along_q6_of_q3 = (
                     2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
+                wrist_x_from_q1_across = d5*r32*cos_q5
+                wrist_y_from_q1_across = d5*r31
                 across_q6_of_q3 = (
                     2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
                 )
@@ -1746,29 +1784,30 @@ def unrolled(k: Constants) -> Unrolled:
                     )
                     *radius_q6
                 )
-                # moved to where the rest can be reached
+                # kept where the rest can be reached
                 if cost_q6_of_q3 > 1e-12 and radius_q6 > 1e-11:
                     cos_q6 = cos_q6_before_q6_of_q3
                     sin_q6 = sin_q6_before_q6_of_q3
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-        r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
-        # what the unknown links must span
-        wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56
-        r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+            r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
+            r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
+            wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56
+            r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
+            wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
-        sine_square_q3 = (reach_squared - a2_minus_a3_squared)*(a2_plus_a3_squared - reach_squared)/scale_q3_squared
+        sine_square_q3 = (
+            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
+        )
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
-        cos_q3 = (reach_squared - a2_squared_plus_a3_squared)/scale_q3
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        if reach_squared > constant_part:
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = a2 + a3*cos_q3
             arm_across_q2 = a3*sin_q3
             angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)

@@ -101,10 +101,10 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_upright - open_a5 < 179.999999999:
             axis_a5_upright = nearest_period(axis_a5_upright, open_a5)
-        r11_from_a4 = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
-        sin_a6 = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
+        scaled_r11_from_a4 = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
+        direction_y_a6 = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
-        axis_a6_upright = offset_a6 + arctan2(sin_a6, r11_from_a4 + 0.0)/DEGREE  # A6: its turn
+        axis_a6_upright = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_upright - open_a6 < 179.999999999:
             axis_a6_upright = nearest_period(axis_a6_upright, open_a6)
         # limits of A4, limits of A5, limits of A6
@@ -120,9 +120,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_upright
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped + 0.0, direction_x_a4_flipped + 0.0)/DEGREE
-            r11_from_a4 = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
-            sin_a6 = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
-            direction_of_axis_a6 = offset_a6 + arctan2(sin_a6 + 0.0, r11_from_a4 + 0.0)/DEGREE
+            scaled_r11_from_a4 = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
+            direction_y_a6 = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
+            direction_of_axis_a6 = offset_a6 + arctan2(direction_y_a6 + 0.0, scaled_r11_from_a4 + 0.0)/DEGREE
         axis_a4_flipped = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_flipped - open_a4 < 179.999999999:
             axis_a4_flipped = nearest_period(axis_a4_flipped, open_a4)
@@ -176,17 +176,17 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a4_flipped = direction_y_a4_upright
         axis_a4 = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright)*RADIAN  # A4: its turn
         axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4)*RADIAN  # A5: its turn
-        r11_from_a4 = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
-        sin_a6 = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
-        axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4)*RADIAN  # A6: its turn
+        scaled_r11_from_a4 = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
+        direction_y_a6 = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
+        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN  # A6: its turn
         if radius_a4 > 1e-11:
             direction_of_axis_a4 = 180.0 + axis_a4
             direction_of_axis_a6 = 180.0 + axis_a6
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped)*RADIAN
-            r11_from_a4 = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
-            sin_a6 = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
-            direction_of_axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4)*RADIAN
+            scaled_r11_from_a4 = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
+            direction_y_a6 = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
+            direction_of_axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN
         axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4)*RADIAN  # A5: its turn
         return (
             (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5_upright, axis_a6),
@@ -217,9 +217,9 @@ def unrolled(k: Constants) -> Unrolled:
         a4_radius_of_a5 = radius_a4*sigma_wrist
         sin_a5 = -r23
         axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5)*RADIAN  # A5: its turn
-        r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
-        sin_a6 = direction_y_a4*r32 - direction_x_a4*r12
-        axis_a6 = offset_a6 + arctan2(sin_a6, r11_from_a4)*RADIAN  # A6: its turn
+        scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
+        direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
+        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     return Unrolled(every_branch, branches, branch)

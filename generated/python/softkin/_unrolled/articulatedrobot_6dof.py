@@ -56,11 +56,10 @@ def unrolled(k: Constants) -> Unrolled:
     single_a6 = k.single_a6
     swing_scale_q3 = k.swing_scale_q3
     machine_scale_times_free_angle = 1e-11*machine_scale
-    a2_minus_effective_q3_squared = (a2 - effective_q3)*(a2 - effective_q3)
-    a2_plus_effective_q3_squared = (a2 + effective_q3)*(a2 + effective_q3)
+    a2_plus_effective_q3 = a2 + effective_q3
+    a2_minus_effective_q3 = a2 - effective_q3
     swing_scale_q3_squared = swing_scale_q3*swing_scale_q3
     a2_squared_plus_effective_q3_squared = a2*a2 + effective_q3*effective_q3
-    constant_part = 9.999999999999999e-23*machine_scale*machine_scale
     angle_of_a3_by_effective_q3 = arctan2(d4/effective_q3 + 0.0, a3/effective_q3 + 0.0)
     offset_a6_plus_180 = 180.0 + offset_a6
     offset_a5_times_2 = 2.0*offset_a5
@@ -120,15 +119,15 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (reach_squared - a2_minus_effective_q3_squared)*(a2_plus_effective_q3_squared - reach_squared)
-            /swing_scale_q3_squared
+            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
+            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        if reach_squared > constant_part:
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
@@ -171,15 +170,15 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
         r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
         r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         # A6: its turn
         axis_a6_front_down_down = (
-            offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234 + 0.0)/DEGREE
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
         )
         if not -180.000000001 <= axis_a6_front_down_down - open_a6 < 179.999999999:
             axis_a6_front_down_down = nearest_period(axis_a6_front_down_down, open_a6)
@@ -200,10 +199,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_front_down_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234 + 0.0, minus_r22_from_q1234 + 0.0)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234 + 0.0, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
             )
         axis_a4_front_down_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_front_down_up - open_a4 < 179.999999999:
@@ -240,11 +239,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a5_front_up_down - open_a5 < 179.999999999:
             axis_a5_front_up_down = nearest_period(axis_a5_front_up_down, open_a5)
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_front_up_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234 + 0.0)/DEGREE
+        axis_a6_front_up_down = (
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
+        )
         if not -180.000000001 <= axis_a6_front_up_down - open_a6 < 179.999999999:
             axis_a6_front_up_down = nearest_period(axis_a6_front_up_down, open_a6)
         axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
@@ -258,10 +259,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_front_up_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234 + 0.0, minus_r22_from_q1234 + 0.0)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234 + 0.0, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
             )
         axis_a4_front_up_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_front_up_up - open_a4 < 179.999999999:
@@ -318,15 +319,15 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_front_up_up = 3.0
         r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
         wrist_x_from_q1 = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (reach_squared - a2_minus_effective_q3_squared)*(a2_plus_effective_q3_squared - reach_squared)
-            /swing_scale_q3_squared
+            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
+            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        if reach_squared > constant_part:
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
@@ -367,13 +368,15 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
         r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_back_down_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234 + 0.0)/DEGREE
+        axis_a6_back_down_down = (
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
+        )
         if not -180.000000001 <= axis_a6_back_down_down - open_a6 < 179.999999999:
             axis_a6_back_down_down = nearest_period(axis_a6_back_down_down, open_a6)
         axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
@@ -390,10 +393,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_back_down_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234 + 0.0, minus_r22_from_q1234 + 0.0)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234 + 0.0, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
             )
         axis_a4_back_down_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_back_down_up - open_a4 < 179.999999999:
@@ -430,11 +433,13 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a5_back_up_down - open_a5 < 179.999999999:
             axis_a5_back_up_down = nearest_period(axis_a5_back_up_down, open_a5)
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_back_up_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234 + 0.0)/DEGREE
+        axis_a6_back_up_down = (
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
+        )
         if not -180.000000001 <= axis_a6_back_up_down - open_a6 < 179.999999999:
             axis_a6_back_up_down = nearest_period(axis_a6_back_up_down, open_a6)
         axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
@@ -448,10 +453,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_back_up_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234 + 0.0, minus_r22_from_q1234 + 0.0)/DEGREE
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234 + 0.0, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
             )
         axis_a4_back_up_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_back_up_up - open_a4 < 179.999999999:
@@ -607,17 +612,17 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (reach_squared - a2_minus_effective_q3_squared)*(a2_plus_effective_q3_squared - reach_squared)
-            /swing_scale_q3_squared
+            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
+            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
         refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN  # A1: its turn
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        if reach_squared > constant_part:
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
@@ -656,22 +661,24 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
         r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
         r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_front_down_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
+        axis_a6_front_down_down = (
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+        )
         if radius_q4 > 1e-11:
             direction_of_axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
             direction_of_axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
         else:
             direction_of_axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_front_down_up = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
             )
         axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
         axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
@@ -697,34 +704,36 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_front_up_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
+        axis_a6_front_up_down = (
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+        )
         if radius_q4 > 1e-11:
             direction_of_axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
             direction_of_axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
         else:
             direction_of_axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_front_up_up = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
             )
         axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
         wrist_x_from_q1 = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (reach_squared - a2_minus_effective_q3_squared)*(a2_plus_effective_q3_squared - reach_squared)
-            /swing_scale_q3_squared
+            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
+            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
         refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN  # A1: its turn
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        if reach_squared > constant_part:
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
@@ -763,22 +772,24 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
         r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
         r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_back_down_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
+        axis_a6_back_down_down = (
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+        )
         if radius_q4 > 1e-11:
             direction_of_axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
             direction_of_axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
         else:
             direction_of_axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_back_down_up = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
             )
         axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
         axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
@@ -804,20 +815,22 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
-        axis_a6_back_up_down = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
+        axis_a6_back_up_down = (
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+        )
         if radius_q4 > 1e-11:
             direction_of_axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
             direction_of_axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
         else:
             direction_of_axis_a4_back_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
+            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_back_up_up = (
-                offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
             )
         axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: its turn
         return (
@@ -914,19 +927,19 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (reach_squared - a2_minus_effective_q3_squared)*(a2_plus_effective_q3_squared - reach_squared)
-            /swing_scale_q3_squared
+            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
+            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_squared)/swing_scale_q3
-        if reach_squared > constant_part:
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3*sin_swing_q3
             arm_across_q2 = a2 + effective_q3*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
@@ -962,12 +975,13 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r11_from_q1 = r11*cos_q1 + r21*sin_q1
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_r21_from_q1234 = direction_x_q4*r21_from_q1 + direction_y_q4*r11_from_q123
+        minus_scaled_r21_from_q1234 = direction_x_q4*r21_from_q1 + direction_y_q4*r11_from_q123
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
         r12_from_q1 = r12*cos_q1 + r22*sin_q1
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_r22_from_q1234 = direction_x_q4*r22_from_q1 + direction_y_q4*r12_from_q123
-        axis_a6 = offset_a6_plus_180 + arctan2(minus_r21_from_q1234, minus_r22_from_q1234)*RADIAN  # A6: its turn
+        minus_scaled_r22_from_q1234 = direction_x_q4*r22_from_q1 + direction_y_q4*r12_from_q123
+        # A6: its turn
+        axis_a6 = offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     return Unrolled(every_branch, branches, branch)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -44,9 +44,9 @@ def unrolled(k: Constants) -> Unrolled:
             return 1*(2.0,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length_squared = heading_across*heading_across + heading_along*heading_along
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length_squared > 9.999999999999999e-23):
+        if not (heading_length > 1e-11):
             return 1*(3.0,)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: its turn
@@ -64,9 +64,9 @@ def unrolled(k: Constants) -> Unrolled:
         _, ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length_squared = heading_across*heading_across + heading_along*heading_along
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length_squared > 9.999999999999999e-23):
+        if not (heading_length > 1e-11):
             return 1*(None,)
         axis_c = offset_c + arctan2(heading_across, heading_along)*RADIAN  # C: its turn
         return (
@@ -78,9 +78,9 @@ def unrolled(k: Constants) -> Unrolled:
         _, ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length_squared = heading_across*heading_across + heading_along*heading_along
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length_squared > 9.999999999999999e-23):
+        if not (heading_length > 1e-11):
             return None
         axis_c = offset_c + arctan2(heading_across, heading_along)*RADIAN  # C: its turn
         return (axis_c,)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import Frame, Reals, Rotation, Vector
@@ -54,9 +54,9 @@ def unrolled(k: Constants) -> Unrolled:
             return 1*(2.0,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length_squared = heading_across*heading_across + heading_along*heading_along
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length_squared > 9.999999999999999e-23):
+        if not (heading_length > 1e-11):
             return 1*(3.0,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -69,9 +69,9 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
             return 1*(3.0,)
-        sin_r = direction_r*heading_across
+        direction_y_r = direction_r*heading_across
         open_r = mid_r if single_r > 0.0 else ref_r  # R: where its turn is open
-        axis_r = offset_r + arctan2(sin_r, heading_along + 0.0)/DEGREE  # R: its turn
+        axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE  # R: its turn
         if not -180.000000001 <= axis_r - open_r < 179.999999999:
             axis_r = nearest_period(axis_r, open_r)
         # limits of R
@@ -86,17 +86,17 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length_squared = heading_across*heading_across + heading_along*heading_along
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length_squared > 9.999999999999999e-23):
+        if not (heading_length > 1e-11):
             return 1*(None,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 1*(None,)
         axis_x = offset_x + x
         axis_y = offset_y + y
-        sin_r = direction_r*heading_across
-        axis_r = offset_r + arctan2(sin_r, heading_along)*RADIAN  # R: its turn
+        direction_y_r = direction_r*heading_across
+        axis_r = offset_r + arctan2(direction_y_r, heading_along)*RADIAN  # R: its turn
         return (
             (axis_x, axis_y, axis_r),
         )
@@ -106,17 +106,17 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length_squared = heading_across*heading_across + heading_along*heading_along
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length_squared > 9.999999999999999e-23):
+        if not (heading_length > 1e-11):
             return None
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
         axis_x = offset_x + x
         axis_y = offset_y + y
-        sin_r = direction_r*heading_across
-        axis_r = offset_r + arctan2(sin_r, heading_along)*RADIAN  # R: its turn
+        direction_y_r = direction_r*heading_across
+        axis_r = offset_r + arctan2(direction_y_r, heading_along)*RADIAN  # R: its turn
         return (axis_x, axis_y, axis_r)
 
     return Unrolled(every_branch, branches, branch)

@@ -32,11 +32,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     machine_scale_times_plane = 1e-6*machine_scale
-    constant_part = (link_length_1 - link_length_2)*(link_length_1 - link_length_2)
-    link_length_1_plus_link_length_2_squared = (link_length_1 + link_length_2)*(link_length_1 + link_length_2)
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     scale_a2_from_a1_squared = scale_a2_from_a1*scale_a2_from_a1
-    constant_part_2 = link_length_1*link_length_1 + link_length_2*link_length_2
-    constant_part_3 = 9.999999999999999e-23*machine_scale*machine_scale
+    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -51,18 +51,19 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 2*(3.0,)
-        reach_squared = x*x + y*y
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2_from_a1 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
             /scale_a2_from_a1_squared
         )
         # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return 2*(3.0,)
-        cos_a2_from_a1 = (reach_squared - constant_part_2)/scale_a2_from_a1
+        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
         sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1
             angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
@@ -124,18 +125,19 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 2*(None,)
-        reach_squared = x*x + y*y
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2_from_a1 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
             /scale_a2_from_a1_squared
         )
         # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return 2*(None,)
-        cos_a2_from_a1 = (reach_squared - constant_part_2)/scale_a2_from_a1
+        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
         sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
@@ -166,18 +168,19 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
-        reach_squared = x*x + y*y
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2_from_a1 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
             /scale_a2_from_a1_squared
         )
         # a2_from_a1: out of reach
         if not (sine_square_a2_from_a1 >= -1e-12):
             return None
-        cos_a2_from_a1 = (reach_squared - constant_part_2)/scale_a2_from_a1
+        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
         sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
             arm_across_a1 = link_length_2*sin_a2_from_a1
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)

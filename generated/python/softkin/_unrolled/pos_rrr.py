@@ -40,11 +40,10 @@ def unrolled(k: Constants) -> Unrolled:
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
     machine_scale_times_free_angle = 1e-11*machine_scale
-    a2_minus_effective_q3_2_squared = (a2 - effective_q3_2)*(a2 - effective_q3_2)
-    a2_plus_effective_q3_2_squared = (a2 + effective_q3_2)*(a2 + effective_q3_2)
+    a2_plus_effective_q3_2 = a2 + effective_q3_2
+    a2_minus_effective_q3_2 = a2 - effective_q3_2
     swing_scale_q3_2_squared = swing_scale_q3_2*swing_scale_q3_2
     a2_squared_plus_effective_q3_2_squared = a2*a2 + effective_q3_2*effective_q3_2
-    constant_part = 9.999999999999999e-23*machine_scale*machine_scale
     angle_of_a3_by_effective_q3_2 = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -84,15 +83,15 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_back = sin_q1_front
         wrist_x_from_q1 = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (reach_squared - a2_minus_effective_q3_2_squared)*(a2_plus_effective_q3_2_squared - reach_squared)
-            /swing_scale_q3_2_squared
+            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
+            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        if reach_squared > constant_part:
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
@@ -144,15 +143,15 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_front_down = 3.0
             refusal_front_up = 3.0
         wrist_x_from_q1 = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (reach_squared - a2_minus_effective_q3_2_squared)*(a2_plus_effective_q3_2_squared - reach_squared)
-            /swing_scale_q3_2_squared
+            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
+            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        if reach_squared > constant_part:
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
@@ -242,17 +241,17 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1_back = sin_q1_front
         wrist_x_from_q1 = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (reach_squared - a2_minus_effective_q3_2_squared)*(a2_plus_effective_q3_2_squared - reach_squared)
-            /swing_scale_q3_2_squared
+            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
+            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
         refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN  # A1: its turn
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        if reach_squared > constant_part:
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
@@ -271,17 +270,17 @@ def unrolled(k: Constants) -> Unrolled:
         angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3*RADIAN  # A3: its turn
         wrist_x_from_q1 = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (reach_squared - a2_minus_effective_q3_2_squared)*(a2_plus_effective_q3_2_squared - reach_squared)
-            /swing_scale_q3_2_squared
+            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
+            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
         refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN  # A1: its turn
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        if reach_squared > constant_part:
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
@@ -330,19 +329,19 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q1 = sin(free_a1)
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
-        reach_squared = wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1
+        reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
-            (reach_squared - a2_minus_effective_q3_2_squared)*(a2_plus_effective_q3_2_squared - reach_squared)
-            /swing_scale_q3_2_squared
+            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
+            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_swing_q3 = (reach_squared - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
-        if reach_squared > constant_part:
+        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        if reach > machine_scale_times_free_angle:
             arm_along_q2 = -effective_q3_2*sin_swing_q3
             arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
             angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)

@@ -32,11 +32,11 @@ def unrolled(k: Constants) -> Unrolled:
     scale_a2 = k.scale_a2
     single_a1 = k.single_a1
     single_a2 = k.single_a2
-    constant_part = (link_length_1 - link_length_2)*(link_length_1 - link_length_2)
-    link_length_1_plus_link_length_2_squared = (link_length_1 + link_length_2)*(link_length_1 + link_length_2)
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     scale_a2_squared = scale_a2*scale_a2
-    constant_part_2 = link_length_1*link_length_1 + link_length_2*link_length_2
-    constant_part_3 = 9.999999999999999e-23*machine_scale*machine_scale
+    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
     offset_a2_times_2 = 2.0*offset_a2
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -49,11 +49,11 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= ref_a2 <= 1e9
         ):
             return 2*(2.0,)
-        reach_squared = x*x + y*y
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a2_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
@@ -62,9 +62,9 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A3
         if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
             return 2*(3.0,)
-        cos_a2 = (reach_squared - constant_part_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
@@ -114,18 +114,18 @@ def unrolled(k: Constants) -> Unrolled:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), _ = frame
         ref_a1, _, _ = reference
-        reach_squared = x*x + y*y
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a2_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
-        cos_a2 = (reach_squared - constant_part_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
@@ -151,18 +151,18 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), _ = frame
         (sigma_elbow,) = signs
         ref_a1, _, _ = reference
-        reach_squared = x*x + y*y
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a2_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        cos_a2 = (reach_squared - constant_part_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)

@@ -38,11 +38,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
-    arm_length_1_minus_arm_length_2_squared = (arm_length_1 - arm_length_2)*(arm_length_1 - arm_length_2)
-    arm_length_1_plus_arm_length_2_squared = (arm_length_1 + arm_length_2)*(arm_length_1 + arm_length_2)
+    arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
+    arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
     scale_a2_squared = scale_a2*scale_a2
     constant_part = arm_length_1*arm_length_1 + arm_length_2*arm_length_2
-    constant_part_2 = 9.999999999999999e-23*machine_scale*machine_scale
+    machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -78,11 +78,11 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
-        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - arm_length_1_minus_arm_length_2_squared)
-            *(arm_length_1_plus_arm_length_2_squared - reach_squared)/scale_a2_squared
+            (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
+            *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
@@ -91,9 +91,9 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return 2*(3.0,)
-        cos_a2 = (reach_squared - constant_part)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach_squared > constant_part_2:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
             arm_across_a1 = arm_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
@@ -165,18 +165,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
-        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - arm_length_1_minus_arm_length_2_squared)
-            *(arm_length_1_plus_arm_length_2_squared - reach_squared)/scale_a2_squared
+            (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
+            *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
-        cos_a2 = (reach_squared - constant_part)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach_squared > constant_part_2:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
             arm_across_a1 = arm_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
@@ -220,18 +220,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - arm_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
-        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - arm_length_1_minus_arm_length_2_squared)
-            *(arm_length_1_plus_arm_length_2_squared - reach_squared)/scale_a2_squared
+            (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
+            *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        cos_a2 = (reach_squared - constant_part)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach_squared > constant_part_2:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
             arm_across_a1 = arm_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)

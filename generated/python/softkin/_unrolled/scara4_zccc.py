@@ -38,11 +38,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     single_a4 = k.single_a4
-    constant_part = (link_length_1 - link_length_2)*(link_length_1 - link_length_2)
-    link_length_1_plus_link_length_2_squared = (link_length_1 + link_length_2)*(link_length_1 + link_length_2)
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     scale_a3_squared = scale_a3*scale_a3
-    constant_part_2 = link_length_1*link_length_1 + link_length_2*link_length_2
-    constant_part_3 = 9.999999999999999e-23*machine_scale*machine_scale
+    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -78,11 +78,11 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a3_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
@@ -91,9 +91,9 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3.0,)
-        cos_a3 = (reach_squared - constant_part_2)/scale_a3
+        cos_a3 = (reach*reach - constant_part)/scale_a3
         sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
             angle_of_arm_along_a2 = arctan2(arm_across_a2 + 0.0, arm_along_a2 + 0.0)
@@ -165,19 +165,19 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a3_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return 2*(None,)
         axis_a1 = offset_a1 + z
-        cos_a3 = (reach_squared - constant_part_2)/scale_a3
+        cos_a3 = (reach*reach - constant_part)/scale_a3
         sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
             angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)
@@ -220,19 +220,19 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a3 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a3_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
         )
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12):
             return None
         axis_a1 = offset_a1 + z
-        cos_a3 = (reach_squared - constant_part_2)/scale_a3
+        cos_a3 = (reach*reach - constant_part)/scale_a3
         sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
             arm_across_a2 = link_length_2*sin_a3
             angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)

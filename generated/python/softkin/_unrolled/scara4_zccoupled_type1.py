@@ -38,11 +38,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a4 = k.single_a4
-    constant_part = (link_length_1 - link_length_2)*(link_length_1 - link_length_2)
-    link_length_1_plus_link_length_2_squared = (link_length_1 + link_length_2)*(link_length_1 + link_length_2)
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     scale_a2_squared = scale_a2*scale_a2
-    constant_part_2 = link_length_1*link_length_1 + link_length_2*link_length_2
-    constant_part_3 = 9.999999999999999e-23*machine_scale*machine_scale
+    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
     pitch_zc_by_360 = pitch_zc/360.0
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -70,22 +70,22 @@ def unrolled(k: Constants) -> Unrolled:
             return 2*(2.0,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length_squared = heading_across*heading_across + heading_along*heading_along
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length_squared > 9.999999999999999e-23):
+        if not (heading_length > 1e-11):
             return 2*(3.0,)
-        reach_squared = x*x + y*y
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a2_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
-        cos_a2 = (reach_squared - constant_part_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
@@ -151,25 +151,25 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        ref_a1, _, _, _ = reference
+        ref_a1, _, _, ref_a4 = reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length_squared = heading_across*heading_across + heading_along*heading_along
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length_squared > 9.999999999999999e-23):
+        if not (heading_length > 1e-11):
             return 2*(None,)
-        reach_squared = x*x + y*y
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a2_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
-        cos_a2 = (reach_squared - constant_part_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
@@ -185,15 +185,20 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_axis_a2 = angle_a2*RADIAN
         axis_a2_right = offset_a2 + part_of_axis_a2  # A2: its turn
         angle_heading = arctan2(heading_across, heading_along)
+        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
-        axis_a4_right = offset_a4 + (angle_heading - angle_a1_right - angle_a2)*RADIAN
+        axis_a4_right = offset_a4 + (angle_heading - angle_a1_right - angle_a2)/DEGREE
+        if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
+            axis_a4_right = nearest_period(axis_a4_right, open_a4)
         a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
         axis_a3_right = a3 + offset_a3
         axis_a1_left = offset_a1 + angle_a1_left*RADIAN  # A1: its turn
         axis_a2_left = offset_a2 - part_of_axis_a2  # A2: its turn
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
-        axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN
+        axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left)/DEGREE
+        if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
+            axis_a4_left = nearest_period(axis_a4_left, open_a4)
         a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
         axis_a3_left = a3 + offset_a3
@@ -206,25 +211,25 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
-        ref_a1, _, _, _ = reference
+        ref_a1, _, _, ref_a4 = reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
-        heading_length_squared = heading_across*heading_across + heading_along*heading_along
+        heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
-        if not (heading_length_squared > 9.999999999999999e-23):
+        if not (heading_length > 1e-11):
             return None
-        reach_squared = x*x + y*y
+        reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a2_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        cos_a2 = (reach_squared - constant_part_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
@@ -237,8 +242,11 @@ def unrolled(k: Constants) -> Unrolled:
         angle_a2 = arctan2(sin_a2, cos_a2)
         axis_a2 = offset_a2 + angle_a2*RADIAN  # A2: its turn
         angle_heading = arctan2(heading_across, heading_along)
+        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
-        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2)*RADIAN
+        axis_a4 = offset_a4 + (angle_heading - angle_a1 - angle_a2)/DEGREE
+        if not -180.000000001 <= axis_a4 - open_a4 < 179.999999999:
+            axis_a4 = nearest_period(axis_a4, open_a4)
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
         axis_a3 = a3 + offset_a3

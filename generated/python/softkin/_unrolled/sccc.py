@@ -43,11 +43,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     machine_scale_times_plane = 1e-6*machine_scale
-    constant_part = (link_length_1 - link_length_2)*(link_length_1 - link_length_2)
-    link_length_1_plus_link_length_2_squared = (link_length_1 + link_length_2)*(link_length_1 + link_length_2)
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     scale_a2_squared = scale_a2*scale_a2
-    constant_part_2 = link_length_1*link_length_1 + link_length_2*link_length_2
-    constant_part_3 = 9.999999999999999e-23*machine_scale*machine_scale
+    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -86,18 +86,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a2_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(3.0,)
-        cos_a2 = (reach_squared - constant_part_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
@@ -198,7 +198,7 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
         """Every slot in principal values, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        ref_a1, _, _ = reference
+        ref_a1, ref_a2, _ = reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -213,18 +213,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a2_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return 2*(None,)
-        cos_a2 = (reach_squared - constant_part_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
@@ -235,26 +235,45 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        axis_a1_right = offset_a1 + angle_a1_right*RADIAN  # A1: its turn
+        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        axis_a1_right = offset_a1 + angle_a1_right/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
+            axis_a1_right = nearest_period(axis_a1_right, open_a1)
         angle_a2 = arctan2(sin_a2, cos_a2)
-        part_of_axis_a2 = angle_a2*RADIAN
-        motor_a1 = DEGREE*(axis_a1_right - offset_a1)
-        axis_a2_right = offset_a2 + part_of_axis_a2 - coupling_12*motor_a1*RADIAN  # A2: its turn
+        motor_a1_right = DEGREE*(axis_a1_right - offset_a1)
+        axis_a1_left = offset_a1 + angle_a1_left/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
+            axis_a1_left = nearest_period(axis_a1_left, open_a1)
+        motor_a1_left = DEGREE*(axis_a1_left - offset_a1)
+        # A2: where its turn is open
+        if single_a2 > 0.0:
+            open_a2_right = mid_a2
+            open_a2_left = mid_a2
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = ref_motor_a2 + coupling_12*free_a1
+            part_of_open_a2 = offset_a2 + free_a2*RADIAN
+            open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right*RADIAN
+            open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left*RADIAN
+        axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
+            axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
         angle_heading = arctan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2_right - offset_a2)
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_right = (
             offset_a3 + (angle_heading - angle_a1_right - angle_a2)*RADIAN
-            - (coupling_13*motor_a1 + coupling_23*motor_a2)*RADIAN
+            - (coupling_13*motor_a1_right + coupling_23*motor_a2)*RADIAN
         )
-        axis_a1_left = offset_a1 + angle_a1_left*RADIAN  # A1: its turn
-        motor_a1 = DEGREE*(axis_a1_left - offset_a1)
-        axis_a2_left = offset_a2 - part_of_axis_a2 - coupling_12*motor_a1*RADIAN  # A2: its turn
+        axis_a2_left = offset_a2 - angle_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
+            axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         motor_a2 = DEGREE*(axis_a2_left - offset_a2)
         # a3: what the sum a123 leaves; A3: its turn
         axis_a3_left = (
             offset_a3 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN
-            - (coupling_13*motor_a1 + coupling_23*motor_a2)*RADIAN
+            - (coupling_13*motor_a1_left + coupling_23*motor_a2)*RADIAN
         )
         return (
             (axis_a1_right, axis_a2_right, axis_a3_right),
@@ -265,7 +284,7 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch in principal values, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
-        ref_a1, _, _ = reference
+        ref_a1, ref_a2, _ = reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -280,18 +299,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - link_length_3*cos_heading  # what the unknown links must span
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
-        reach_squared = wrist_x*wrist_x + wrist_y*wrist_y
+        reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         # kept as a product
         sine_square_a2 = (
-            (reach_squared - constant_part)*(link_length_1_plus_link_length_2_squared - reach_squared)
-            /scale_a2_squared
+            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12):
             return None
-        cos_a2 = (reach_squared - constant_part_2)/scale_a2
+        cos_a2 = (reach*reach - constant_part)/scale_a2
         sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach_squared > constant_part_3:
+        if reach > machine_scale_times_free_angle:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
             arm_across_a1 = link_length_2*sin_a2
             angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
@@ -300,10 +319,23 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1 = free_a1
-        axis_a1 = offset_a1 + angle_a1*RADIAN  # A1: its turn
+        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        axis_a1 = offset_a1 + angle_a1/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - open_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, open_a1)
         angle_a2 = arctan2(sin_a2, cos_a2)
         motor_a1 = DEGREE*(axis_a1 - offset_a1)
-        axis_a2 = offset_a2 + angle_a2*RADIAN - coupling_12*motor_a1*RADIAN  # A2: its turn
+        # A2: where its turn is open
+        if single_a2 > 0.0:
+            open_a2 = mid_a2
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
+            free_a2 = ref_motor_a2 + coupling_12*free_a1
+            open_a2 = offset_a2 + free_a2*RADIAN - coupling_12*motor_a1*RADIAN
+        axis_a2 = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - open_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, open_a2)
         angle_heading = arctan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
         # a3: what the sum a123 leaves; A3: its turn

@@ -64,10 +64,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_c_down = sin(free_c)
             direction_x_c_up = direction_x_c_down
             direction_y_c_up = direction_y_c_down
-        r22_before_c = direction_x_c_down*r22 + direction_y_c_down*r21
-        sin_a = -direction_x_c_down*r12 - direction_y_c_down*r11
+        scaled_r22_before_c = direction_x_c_down*r22 + direction_y_c_down*r21
+        direction_y_a = -direction_x_c_down*r12 - direction_y_c_down*r11
         open_a = mid_a if single_a > 0.0 else ref_a  # A: where its turn is open
-        axis_a_down = offset_a + arctan2(sin_a, r22_before_c + 0.0)/DEGREE  # A: its turn
+        axis_a_down = offset_a + arctan2(direction_y_a, scaled_r22_before_c + 0.0)/DEGREE  # A: its turn
         if not -180.000000001 <= axis_a_down - open_a < 179.999999999:
             axis_a_down = nearest_period(axis_a_down, open_a)
         open_b = mid_b if single_b > 0.0 else ref_b  # B: where its turn is open
@@ -90,9 +90,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a = 180.0 + axis_a_down
             direction_of_axis_c = 180.0 + axis_c_down
         else:
-            r22_before_c = direction_x_c_up*r22 + direction_y_c_up*r21
-            sin_a = -direction_x_c_up*r12 - direction_y_c_up*r11
-            direction_of_axis_a = offset_a + arctan2(sin_a + 0.0, r22_before_c + 0.0)/DEGREE
+            scaled_r22_before_c = direction_x_c_up*r22 + direction_y_c_up*r21
+            direction_y_a = -direction_x_c_up*r12 - direction_y_c_up*r11
+            direction_of_axis_a = offset_a + arctan2(direction_y_a + 0.0, scaled_r22_before_c + 0.0)/DEGREE
             direction_of_axis_c = offset_c + arctan2(direction_y_c_up + 0.0, direction_x_c_up + 0.0)/DEGREE
         axis_a_up = direction_of_axis_a  # A: its turn
         if not -180.000000001 <= axis_a_up - open_a < 179.999999999:
@@ -131,18 +131,18 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_c_down = sin(free_c)
             direction_x_c_up = direction_x_c_down
             direction_y_c_up = direction_y_c_down
-        r22_before_c = direction_x_c_down*r22 + direction_y_c_down*r21
-        sin_a = -direction_x_c_down*r12 - direction_y_c_down*r11
-        axis_a = offset_a + arctan2(sin_a, r22_before_c)*RADIAN  # A: its turn
+        scaled_r22_before_c = direction_x_c_down*r22 + direction_y_c_down*r21
+        direction_y_a = -direction_x_c_down*r12 - direction_y_c_down*r11
+        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN  # A: its turn
         axis_b_down = offset_b + arctan2(radius_c, r33)*RADIAN  # B: its turn
         axis_c = offset_c + arctan2(direction_y_c_down, direction_x_c_down)*RADIAN  # C: its turn
         if radius_c > 1e-11:
             direction_of_axis_a = 180.0 + axis_a
             direction_of_axis_c = 180.0 + axis_c
         else:
-            r22_before_c = direction_x_c_up*r22 + direction_y_c_up*r21
-            sin_a = -direction_x_c_up*r12 - direction_y_c_up*r11
-            direction_of_axis_a = offset_a + arctan2(sin_a, r22_before_c)*RADIAN
+            scaled_r22_before_c = direction_x_c_up*r22 + direction_y_c_up*r21
+            direction_y_a = -direction_x_c_up*r12 - direction_y_c_up*r11
+            direction_of_axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN
             direction_of_axis_c = offset_c + arctan2(direction_y_c_up, direction_x_c_up)*RADIAN
         axis_b_up = offset_b_times_2 - axis_b_down  # B: its turn
         return (
@@ -164,9 +164,9 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        r22_before_c = direction_x_c*r22 + direction_y_c*r21
-        sin_a = -direction_x_c*r12 - direction_y_c*r11
-        axis_a = offset_a + arctan2(sin_a, r22_before_c)*RADIAN  # A: its turn
+        scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
+        direction_y_a = -direction_x_c*r12 - direction_y_c*r11
+        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN  # A: its turn
         c_radius_of_b = radius_c*sigma_hand
         axis_b = offset_b + arctan2(c_radius_of_b, r33)*RADIAN  # B: its turn
         axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN  # C: its turn
