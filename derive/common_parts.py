@@ -27,7 +27,8 @@ def common_parts(program: Program, signs: Sequence[Sign], constants: frozenset[s
         found = _most_common(program, constants)
         if not found:
             return program
-        names = {part: _name(part, user, signs, taken) for part, user in found.items()}
+        bound = {let.value: let.name for let in program.lets()}
+        names = {p: bound.get(p) or _negative(bound.get(-p)) or _name(p, user, signs, taken) for p, user in found.items()}
         program = _with_names(program, names)
 
 
@@ -68,7 +69,11 @@ def _without_sign(value: sp.Expr) -> sp.Expr:
     return -value if value.could_extract_minus_sign() else value
 
 
-def _with_names(program: Program, names: Mapping[sp.Expr, sp.Symbol]) -> Program:
+def _negative(name: sp.Symbol | None) -> sp.Expr | None:
+    return None if name is None else -name
+
+
+def _with_names(program: Program, names: Mapping[sp.Expr, sp.Expr]) -> Program:
     body: list[Statement] = []
     for statement in program.body:
         if isinstance(statement, Let):
@@ -77,10 +82,11 @@ def _with_names(program: Program, names: Mapping[sp.Expr, sp.Symbol]) -> Program
                 value = _read(value, part, name)
             statement = Let(statement.name, value, statement.note)
         body.append(statement)
-    return assemble(program.name, [*(Let(name, part) for part, name in names.items()), *body], program.outputs)
+    parts = [Let(name, part) for part, name in names.items() if name.is_Symbol and name not in program.bound()]
+    return assemble(program.name, [*parts, *body], program.outputs)
 
 
-def _read(value: sp.Expr, part: sp.Expr, name: sp.Symbol) -> sp.Expr:
+def _read(value: sp.Expr, part: sp.Expr, name: sp.Expr) -> sp.Expr:
     """The value with the part by its name."""
     if isinstance(value, Select | sp.Mul):
         return value.func(*(_read(a, part, name) if isinstance(a, sp.Expr) else a for a in value.args))

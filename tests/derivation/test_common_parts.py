@@ -46,6 +46,12 @@ def test_a_sum_within_sums_is_computed_once() -> None:
     same(program, found)
 
 
+def test_a_part_that_has_a_name_keeps_it() -> None:
+    lets = (Let(A, X - Y), Let(B, X - Y + P), Let(C, Y - X + Q))
+    program = assemble("p", lets, [Output("o", A * B * C)])
+    assert values(shared(program)) == {"a": X - Y, "b": A + P, "c": Q - A}
+
+
 def test_parts_are_found_on_sides_of_choices_and_in_quotients() -> None:
     regular = sp.Gt(R, 1)
     lets = (Let(A, Select(regular, (X * P + Y * Q) / R, C)), Let(B, Select(regular, (X * P - Y * Q) / R, C)))

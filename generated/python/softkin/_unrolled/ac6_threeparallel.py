@@ -139,10 +139,10 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1_before_q6_of_q3 = (
             cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         )
-        wrist_z = z - d6*r33
-        d1_minus_wrist_z = d1 - wrist_z
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
-        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_down - d1_minus_wrist_z
+        wrist_z = z - d6*r33
+        wrist_y_from_q1_fixed = wrist_z - d1
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
@@ -158,7 +158,6 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
@@ -245,7 +244,7 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
             wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-            wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z
+            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
@@ -301,7 +300,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1_before_q6_of_q3 = (
             cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         )
-        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_up - d1_minus_wrist_z
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
@@ -312,7 +311,6 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
-            wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
@@ -400,7 +398,7 @@ def unrolled(k: Constants) -> Unrolled:
         # what the unknown links must span
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
@@ -527,7 +525,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         )
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
-        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_down - d1_minus_wrist_z
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
@@ -543,7 +541,6 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             wrist_y_from_q1_across = d5*r31
@@ -630,7 +627,7 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
             wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-            wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z
+            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
@@ -680,7 +677,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1_before_q6_of_q3 = (
             cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         )
-        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_up - d1_minus_wrist_z
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
@@ -691,7 +688,6 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
-            wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             wrist_y_from_q1_across = d5*r31
@@ -779,7 +775,7 @@ def unrolled(k: Constants) -> Unrolled:
         # what the unknown links must span
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         # kept as a product
@@ -1003,10 +999,10 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1_before_q6_of_q3 = (
             cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         )
-        wrist_z = z - d6*r33
-        d1_minus_wrist_z = d1 - wrist_z
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
-        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_down - d1_minus_wrist_z
+        wrist_z = z - d6*r33
+        wrist_y_from_q1_fixed = wrist_z - d1
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
@@ -1022,7 +1018,6 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
@@ -1109,7 +1104,7 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
             wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-            wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z
+            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
@@ -1149,7 +1144,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1_before_q6_of_q3 = (
             cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         )
-        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_up - d1_minus_wrist_z
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
@@ -1160,7 +1155,6 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
-            wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
@@ -1248,7 +1242,7 @@ def unrolled(k: Constants) -> Unrolled:
         # what the unknown links must span
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
@@ -1311,7 +1305,7 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         )
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
-        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_down - d1_minus_wrist_z
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
@@ -1327,7 +1321,6 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r22_from_q1_before_q6_before_q6_of_q3_down
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
-            wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             wrist_y_from_q1_across = d5*r31
@@ -1414,7 +1407,7 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
             wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-            wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z
+            wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
@@ -1454,7 +1447,7 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1_before_q6_of_q3 = (
             cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         )
-        wrist_y_from_q1_before_q6_of_q3 = d5*r22_from_q1_before_q6_before_q6_of_q3_up - d1_minus_wrist_z
+        wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
             wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
@@ -1465,7 +1458,6 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
-            wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             wrist_y_from_q1_across = d5*r31
@@ -1553,7 +1545,7 @@ def unrolled(k: Constants) -> Unrolled:
         # what the unknown links must span
         wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
-        wrist_y_from_q1 = d5*r22_from_q1_before_q6 - d1_minus_wrist_z  # what the unknown links must span
+        wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
