@@ -66,9 +66,9 @@ class _Finder:
     def _chosen(self, let: Let, condition: sp.Basic, known: dict[sp.Basic, sp.Expr]) -> tuple[Statement, ...]:
         """The choice between the twin and the value, where there is a twin if the condition holds."""
         there = let.value.xreplace(known)
-        for sign in (1, -1):
-            if sign * there in self.values:
-                known[let.name] = sign * self.values[sign * there]
+        for sign, value in ((1, there), (-1, _negative(there))):
+            if value in self.values:
+                known[let.name] = sign * self.values[value]
                 return (replace(let, value=Select(condition, known[let.name], let.value)),)
         turned = self._turned(there)
         if turned is None:
@@ -107,6 +107,11 @@ class _Finder:
             if twin is not None and twin[1] == second:
                 self.known.setdefault(condition, {})[let.name] = -twin[0]
             self.sides.setdefault((condition, first), (let.name, second))
+
+
+def _negative(value: sp.Expr) -> sp.Expr:
+    """The negative, of a choice side by side."""
+    return Select(value.args[0], *map(_negative, value.args[1:])) if isinstance(value, Select) else -value
 
 
 def _angle(value: sp.Expr) -> tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr] | None:

@@ -74,8 +74,8 @@ def spared(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...
 
 def _reads_where(item: Item, condition: sp.Basic) -> set[sp.Symbol]:
     """What a statement reads where a condition holds."""
-    if isinstance(item, Arms) and item.condition == condition:
-        return set(_symbols(condition)).union(*map(_reads_somewhere, item.holds))
+    if isinstance(item, Arms) and (item.condition == condition or _follows(item.condition, condition, sp.true)):
+        return set(_symbols(item.condition)).union(*map(_reads_somewhere, item.holds))
     return _reads_somewhere(item)
 
 
@@ -204,7 +204,8 @@ class _Choice:
         """The values that change where the condition is known; a number that this gives is known, too."""
         stretch = self.stretch
         known: dict[sp.Basic, sp.Basic] = {self.condition: truth}
-        pending, changed = set(stretch.deciding.get(self.condition, ())), dict[int, sp.Expr]()
+        known |= {other: truth for other in stretch.deciding if _follows(other, self.condition, truth)}
+        pending, changed = {p for condition in known for p in stretch.deciding.get(condition, ())}, dict[int, sp.Expr]()
         while pending:
             place = min(pending)
             pending.remove(place)
@@ -278,6 +279,15 @@ class _Choice:
             if place in self.members or self.inside.get(place) == side
         ]
         return tuple(_gathered(_simplified(lets, set(results)), frozenset(results)))
+
+
+def _follows(other: sp.Basic, condition: sp.Basic, truth: sp.Basic) -> bool:
+    """Whether another condition has the same truth: what is above a number is above smaller ones, and so on."""
+    if not (isinstance(other, sp.StrictGreaterThan) and isinstance(condition, sp.StrictGreaterThan)):
+        return False
+    if other.lhs != condition.lhs or not (other.rhs.is_number and condition.rhs.is_number):
+        return False
+    return bool(other.rhs <= condition.rhs if truth == sp.true else other.rhs >= condition.rhs)
 
 
 def _simplified(lets: Sequence[Let], results: set[sp.Symbol]) -> list[Let]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.angles_first import angles_first
+from derive.columns import shorter_columns
 from derive.common_parts import common_parts
 from derive.constant_parts import constant_parts
 from derive.emit.arms import in_arms, spared
@@ -87,7 +88,7 @@ def every_branch(kin: Kinematics) -> Program:
 
 def branches(kin: Kinematics) -> Program:
     """All branches in principal values."""
-    one = _nearest(kin, kin.branch)
+    one = shorter_columns(_nearest(kin, kin.branch))
     every = with_twins(unroll(one, signs(kin)))
     counted = [name for name in every.bound() if real(without_words(name.name, signs(kin))[0]) in counted_turns(one)]
     return common_parts(principal(every, counted), signs(kin), _constants(kin))
@@ -144,7 +145,7 @@ def _with_constant_parts(kin: Kinematics, methods: Sequence[Method]) -> tuple[li
 
 def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
     position, rotation, sign_values, _, reference = branch(kin).arguments
-    one = _nearest(kin, kin.branch)
+    one = shorter_columns(_nearest(kin, kin.branch))
     return (
         Method(
             "every_branch", "Every slot: its axes, or the number of its status.", every_branch(kin),

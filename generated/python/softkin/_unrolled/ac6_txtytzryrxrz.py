@@ -168,25 +168,31 @@ def unrolled(k: Constants) -> Unrolled:
         if radius_a4 > 1e-11:
             direction_x_a4_upright = r33
             direction_y_a4_upright = r13
+            if radius_a4 > 0.1:
+                scaled_r11_from_a4_upright = r22
+                direction_y_a6_upright = r21
+            else:
+                scaled_r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
+                direction_y_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             direction_x_a4_upright = cos(free_a4)
             direction_y_a4_upright = sin(free_a4)
+            scaled_r11_from_a4_upright = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
+            direction_y_a6_upright = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
             direction_x_a4_flipped = direction_x_a4_upright
             direction_y_a4_flipped = direction_y_a4_upright
+            scaled_r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
+            direction_y_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
         axis_a4 = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright)*RADIAN  # A4: its turn
         axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4)*RADIAN  # A5: its turn
-        scaled_r11_from_a4 = direction_x_a4_upright*r11 - direction_y_a4_upright*r31
-        direction_y_a6 = direction_y_a4_upright*r32 - direction_x_a4_upright*r12
-        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN  # A6: its turn
+        axis_a6 = offset_a6 + arctan2(direction_y_a6_upright, scaled_r11_from_a4_upright)*RADIAN  # A6: its turn
         if radius_a4 > 1e-11:
             direction_of_axis_a4 = 180.0 + axis_a4
             direction_of_axis_a6 = 180.0 + axis_a6
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped)*RADIAN
-            scaled_r11_from_a4 = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
-            direction_y_a6 = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
-            direction_of_axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN
+            direction_of_axis_a6 = offset_a6 + arctan2(direction_y_a6_flipped, scaled_r11_from_a4_flipped)*RADIAN
         axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4)*RADIAN  # A5: its turn
         return (
             (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5_upright, axis_a6),
@@ -209,16 +215,22 @@ def unrolled(k: Constants) -> Unrolled:
         if radius_a4 > 1e-11:
             direction_x_a4 = r33*sigma_wrist
             direction_y_a4 = r13*sigma_wrist
+            if radius_a4 > 0.1:
+                scaled_r11_from_a4 = r22*sigma_wrist
+                direction_y_a6 = r21*sigma_wrist
+            else:
+                scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
+                direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             direction_x_a4 = cos(free_a4)
             direction_y_a4 = sin(free_a4)
+            scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
+            direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
         axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4)*RADIAN  # A4: its turn
         a4_radius_of_a5 = radius_a4*sigma_wrist
         sin_a5 = -r23
         axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5)*RADIAN  # A5: its turn
-        scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
-        direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
         axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 

@@ -645,40 +645,57 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1_front - r13*sin_q1_front
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
+        r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
-        if radius_q4 > 1e-11:
+        if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
+            r32_times_sin_q23 = r32*sin_q23
+            cos_q23_times_r12_from_q1 = r12_from_q1*cos_q23
+            minus_scaled_r21_from_q1234_down = cos_q23_times_r12_from_q1 + r32_times_sin_q23
+            r31_times_sin_q23 = r31*sin_q23
+            cos_q23_times_r11_from_q1 = r11_from_q1*cos_q23
+            minus_scaled_r22_from_q1234_down = -cos_q23_times_r11_from_q1 - r31_times_sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4_down = cos(free_a4)
-            direction_y_q4_down = sin(free_a4)
-            direction_x_q4_up = direction_x_q4_down
-            direction_y_q4_up = direction_y_q4_down
+            r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
+            r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            if radius_q4 > 1e-11:
+                direction_x_q4_down = -r13_from_q123
+                direction_y_q4_down = r23_from_q1
+                direction_x_q4_up = -direction_x_q4_down
+                direction_y_q4_up = -r23_from_q1
+            else:
+                direction_x_q4_down = cos(free_a4)
+                direction_y_q4_down = sin(free_a4)
+                direction_x_q4_up = direction_x_q4_down
+                direction_y_q4_up = direction_y_q4_down
+            r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+            minus_scaled_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+            r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+            minus_scaled_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+            if radius_q4 > 1e-11:
+                minus_scaled_r21_from_q1234_up = -minus_scaled_r21_from_q1234_down
+                minus_scaled_r22_from_q1234_up = -minus_scaled_r22_from_q1234_down
+            else:
+                minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+                minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
         axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
-        r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
-        r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
-        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
-        r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
-        r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
-        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
         axis_a6_front_down_down = (
-            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
         )
         if radius_q4 > 1e-11:
             direction_of_axis_a4_front_down_up = 180.0 + axis_a4_front_down_down
             direction_of_axis_a6_front_down_up = 180.0 + axis_a6_front_down_down
         else:
             direction_of_axis_a4_front_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_front_down_up = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
         axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
         axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
@@ -691,35 +708,54 @@ def unrolled(k: Constants) -> Unrolled:
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
-        if radius_q4 > 1e-11:
+        if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
+            r32_times_sin_q23 = r32*sin_q23
+            cos_q23_times_r12_from_q1 = r12_from_q1*cos_q23
+            minus_scaled_r21_from_q1234_down = cos_q23_times_r12_from_q1 + r32_times_sin_q23
+            r31_times_sin_q23 = r31*sin_q23
+            cos_q23_times_r11_from_q1 = r11_from_q1*cos_q23
+            minus_scaled_r22_from_q1234_down = -cos_q23_times_r11_from_q1 - r31_times_sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4_down = cos(free_a4)
-            direction_y_q4_down = sin(free_a4)
-            direction_x_q4_up = direction_x_q4_down
-            direction_y_q4_up = direction_y_q4_down
+            r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
+            r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            if radius_q4 > 1e-11:
+                direction_x_q4_down = -r13_from_q123
+                direction_y_q4_down = r23_from_q1
+                direction_x_q4_up = -direction_x_q4_down
+                direction_y_q4_up = -r23_from_q1
+            else:
+                direction_x_q4_down = cos(free_a4)
+                direction_y_q4_down = sin(free_a4)
+                direction_x_q4_up = direction_x_q4_down
+                direction_y_q4_up = direction_y_q4_down
+            r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+            minus_scaled_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+            r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+            minus_scaled_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+            if radius_q4 > 1e-11:
+                minus_scaled_r21_from_q1234_up = -minus_scaled_r21_from_q1234_down
+                minus_scaled_r22_from_q1234_up = -minus_scaled_r22_from_q1234_down
+            else:
+                minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+                minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
         axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
-        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
-        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
         axis_a6_front_up_down = (
-            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
         )
         if radius_q4 > 1e-11:
             direction_of_axis_a4_front_up_up = 180.0 + axis_a4_front_up_down
             direction_of_axis_a6_front_up_up = 180.0 + axis_a6_front_up_down
         else:
             direction_of_axis_a4_front_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_front_up_up = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
         axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
         wrist_x_from_q1 = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
@@ -756,40 +792,57 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1_back - r13*sin_q1_back
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
+        r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
-        if radius_q4 > 1e-11:
+        if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
+            r32_times_sin_q23 = r32*sin_q23
+            cos_q23_times_r12_from_q1 = r12_from_q1*cos_q23
+            minus_scaled_r21_from_q1234_down = cos_q23_times_r12_from_q1 + r32_times_sin_q23
+            r31_times_sin_q23 = r31*sin_q23
+            cos_q23_times_r11_from_q1 = r11_from_q1*cos_q23
+            minus_scaled_r22_from_q1234_down = -cos_q23_times_r11_from_q1 - r31_times_sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4_down = cos(free_a4)
-            direction_y_q4_down = sin(free_a4)
-            direction_x_q4_up = direction_x_q4_down
-            direction_y_q4_up = direction_y_q4_down
+            r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
+            r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            if radius_q4 > 1e-11:
+                direction_x_q4_down = -r13_from_q123
+                direction_y_q4_down = r23_from_q1
+                direction_x_q4_up = -direction_x_q4_down
+                direction_y_q4_up = -r23_from_q1
+            else:
+                direction_x_q4_down = cos(free_a4)
+                direction_y_q4_down = sin(free_a4)
+                direction_x_q4_up = direction_x_q4_down
+                direction_y_q4_up = direction_y_q4_down
+            r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+            minus_scaled_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+            r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+            minus_scaled_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+            if radius_q4 > 1e-11:
+                minus_scaled_r21_from_q1234_up = -minus_scaled_r21_from_q1234_down
+                minus_scaled_r22_from_q1234_up = -minus_scaled_r22_from_q1234_down
+            else:
+                minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+                minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
         axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         axis_a5_back_down_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
-        r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
-        r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
-        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
-        r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
-        r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
-        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
         axis_a6_back_down_down = (
-            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
         )
         if radius_q4 > 1e-11:
             direction_of_axis_a4_back_down_up = 180.0 + axis_a4_back_down_down
             direction_of_axis_a6_back_down_up = 180.0 + axis_a6_back_down_down
         else:
             direction_of_axis_a4_back_down_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_back_down_up = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
         axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
         axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
@@ -802,35 +855,54 @@ def unrolled(k: Constants) -> Unrolled:
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
-        if radius_q4 > 1e-11:
+        if radius_q4 > 0.1:
             direction_x_q4_down = -r13_from_q123
             direction_y_q4_down = r23_from_q1
+            r32_times_sin_q23 = r32*sin_q23
+            cos_q23_times_r12_from_q1 = r12_from_q1*cos_q23
+            minus_scaled_r21_from_q1234_down = cos_q23_times_r12_from_q1 + r32_times_sin_q23
+            r31_times_sin_q23 = r31*sin_q23
+            cos_q23_times_r11_from_q1 = r11_from_q1*cos_q23
+            minus_scaled_r22_from_q1234_down = -cos_q23_times_r11_from_q1 - r31_times_sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4_down = cos(free_a4)
-            direction_y_q4_down = sin(free_a4)
-            direction_x_q4_up = direction_x_q4_down
-            direction_y_q4_up = direction_y_q4_down
+            r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
+            r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            if radius_q4 > 1e-11:
+                direction_x_q4_down = -r13_from_q123
+                direction_y_q4_down = r23_from_q1
+                direction_x_q4_up = -direction_x_q4_down
+                direction_y_q4_up = -r23_from_q1
+            else:
+                direction_x_q4_down = cos(free_a4)
+                direction_y_q4_down = sin(free_a4)
+                direction_x_q4_up = direction_x_q4_down
+                direction_y_q4_up = direction_y_q4_down
+            r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+            minus_scaled_r21_from_q1234_down = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
+            r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+            minus_scaled_r22_from_q1234_down = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
+            if radius_q4 > 1e-11:
+                minus_scaled_r21_from_q1234_up = -minus_scaled_r21_from_q1234_down
+                minus_scaled_r22_from_q1234_up = -minus_scaled_r22_from_q1234_down
+            else:
+                minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
+                minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
         axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
-        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
-        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
         axis_a6_back_up_down = (
-            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
         )
         if radius_q4 > 1e-11:
             direction_of_axis_a4_back_up_up = 180.0 + axis_a4_back_up_down
             direction_of_axis_a6_back_up_up = 180.0 + axis_a6_back_up_down
         else:
             direction_of_axis_a4_back_up_up = offset_a4 + arctan2(direction_y_q4_up, direction_x_q4_up)*RADIAN
-            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6_back_up_up = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
+                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
         axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: its turn
         return (
@@ -960,26 +1032,33 @@ def unrolled(k: Constants) -> Unrolled:
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         # q4: direction and distance of a point
         radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        r11_from_q1 = r11*cos_q1 + r21*sin_q1
+        r12_from_q1 = r12*cos_q1 + r22*sin_q1
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
-        if radius_q4 > 1e-11:
+        if radius_q4 > 0.1:
             direction_x_q4 = -r13_from_q123*sigma_hand
             direction_y_q4 = r23_from_q1*sigma_hand
+            minus_scaled_r21_from_q1234 = sigma_hand*(r12_from_q1*cos_q23 + r32*sin_q23)
+            minus_scaled_r22_from_q1234 = -sigma_hand*(r11_from_q1*cos_q23 + r31*sin_q23)
         else:
-            free_a4 = (ref_a4 - offset_a4)*DEGREE
-            direction_x_q4 = cos(free_a4)
-            direction_y_q4 = sin(free_a4)
+            # q4: polar angle in the r13 and r23 equations; its reference where it is free
+            if radius_q4 > 1e-11:
+                direction_x_q4 = -r13_from_q123*sigma_hand
+                direction_y_q4 = r23_from_q1*sigma_hand
+            else:
+                free_a4 = (ref_a4 - offset_a4)*DEGREE
+                direction_x_q4 = cos(free_a4)
+                direction_y_q4 = sin(free_a4)
+            r21_from_q1 = r21*cos_q1 - r11*sin_q1
+            r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
+            minus_scaled_r21_from_q1234 = direction_x_q4*r21_from_q1 + direction_y_q4*r11_from_q123
+            r22_from_q1 = r22*cos_q1 - r12*sin_q1
+            r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
+            minus_scaled_r22_from_q1234 = direction_x_q4*r22_from_q1 + direction_y_q4*r12_from_q123
         axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN  # A4: its turn
         q4_radius_of_q5 = radius_q4*sigma_hand
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5)*RADIAN  # A5: its turn
-        r21_from_q1 = r21*cos_q1 - r11*sin_q1
-        r11_from_q1 = r11*cos_q1 + r21*sin_q1
-        r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-        minus_scaled_r21_from_q1234 = direction_x_q4*r21_from_q1 + direction_y_q4*r11_from_q123
-        r22_from_q1 = r22*cos_q1 - r12*sin_q1
-        r12_from_q1 = r12*cos_q1 + r22*sin_q1
-        r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-        minus_scaled_r22_from_q1234 = direction_x_q4*r22_from_q1 + direction_y_q4*r12_from_q123
         # A6: its turn
         axis_a6 = offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
