@@ -70,9 +70,9 @@ def one_solution(arm: Arm) -> Callable[[Any, Any], Axes | None]:
 
     def inverse(frame: Any, signs: Any) -> Axes | None:
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
-        arm, elbow, wrist = signs
+        side, elbow, wrist = signs
         x, y, z = x - c4 * r13, y - c4 * r23, z - c4 * r33 - c1
-        ahead, first = arm * sqrt(x * x + y * y) - a1, atan2(arm * y, arm * x)
+        ahead, first = side * sqrt(x * x + y * y) - a1, atan2(side * y, side * x)
         reach = ahead * ahead + z * z
         folded = (reach - c2 * c2 - square) / twice
         if not -1.0 <= folded <= 1.0:
@@ -101,9 +101,9 @@ def batch(arm: Arm) -> Callable[[tuple[Array, Array, Array]], Array]:
     def chunk(positions: Array, rotations: Array, signs: Array) -> Array:
         x, y, z = positions.T.copy()
         r11, r12, r13, r21, r22, r23, r31, r32, r33 = rotations.T.copy()
-        arm, elbow, wrist = signs.T.copy()
+        side, elbow, wrist = signs.T.copy()
         x, y, z = x - c4 * r13, y - c4 * r23, z - c4 * r33 - c1
-        ahead, first = arm * np.sqrt(x * x + y * y) - a1, np.arctan2(arm * y, arm * x)
+        ahead, first = side * np.sqrt(x * x + y * y) - a1, np.arctan2(side * y, side * x)
         reach = ahead * ahead + z * z
         second = np.arctan2(ahead, z) - elbow * np.arccos((reach + c2 * c2 - square) / (2.0 * np.sqrt(reach) * c2))
         third = elbow * np.arccos((reach - c2 * c2 - square) / twice) - fold

@@ -18,7 +18,8 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.directions import Pair, lengths_of, products
-from derive.passes import assemble, fresh, names_of
+from derive.names import Names
+from derive.passes import assemble
 from derive.program import DEGREE, Atan2, Let, Program, Select, Statement, reads, real, rewritten, symbols_of
 from derive.turnless import turnless
 
@@ -68,11 +69,10 @@ def _turnless_directions(program: Program) -> dict[Pair, sp.Symbol]:
     """The names whose arc tangent is taken, and may be a turn more or less, with the name of the angle."""
     nodes = (node for let in program.lets() for node in sp.preorder_traversal(let.value) if isinstance(node, Atan2))
     pairs = [node.args for node in dict.fromkeys(nodes) if all(a.is_Symbol for a in node.args)]
-    names, taken = {let.value: let.name for let in program.lets() if isinstance(let.value, Atan2)}, names_of(program)
+    names, taken = {let.value: let.name for let in program.lets() if isinstance(let.value, Atan2)}, Names.of(program)
     for pair in pairs:
         if Atan2(*pair) not in names:
-            names[Atan2(*pair)] = fresh(_name_of(pair), taken)
-            taken.add(names[Atan2(*pair)].name)
+            names[Atan2(*pair)] = taken.fresh(_name_of(pair))
     free = turnless(replace(program, body=_read_by_name(program, names)))
     return {(s, c): names[Atan2(s, c)] for s, c in pairs if names[Atan2(s, c)] in free}
 
@@ -84,9 +84,9 @@ def _read_by_name(program: Program, names: Mapping[sp.Basic, sp.Basic]) -> tuple
     return (*lets, *(rewritten(s, lambda e: e.xreplace(dict(names))) for s in bound))
 
 
-def _name_of(pair: Pair) -> sp.Symbol:
+def _name_of(pair: Pair) -> str:
     """`angle_q2` of `cos_q2` or `direction_x_q2`."""
-    return real(f"angle_{pair[1].name.removeprefix('cos_').removeprefix('direction_x_')}")
+    return f"angle_{pair[1].name.removeprefix('cos_').removeprefix('direction_x_')}"
 
 
 def _angle(pair: Pair, known: _Known) -> sp.Expr | None:
@@ -163,17 +163,16 @@ def _with_angles(
     program: Program, angles: Mapping[Pair, sp.Expr], names: Mapping[Pair, sp.Symbol], sums: Sequence[_Sum]
 ) -> Program:
     """The program with these angles under names, and the sines of their sums."""
-    taken = names_of(program) | {name.name for name in names.values()}
+    taken = Names(s.name for s in (*program.inputs, *program.bound(), *names.values()))
     parts: dict[sp.Basic, sp.Symbol] = {}
     for part in (p for angle in angles.values() for p in sorted(angle.atoms(Atan2), key=str)):
         if part not in parts and part.args[1].is_Symbol:
-            parts[part] = fresh(real(f"angle_of_{part.args[1].name.removeprefix('cos_')}"), taken)
-            taken.add(parts[part].name)
+            parts[part] = taken.fresh(f"angle_of_{part.args[1].name.removeprefix('cos_')}")
     lets: list[Statement] = [Let(name, sp.sympify(part)) for part, name in parts.items()]
     lets += [Let(names[pair], angle.xreplace(parts)) for pair, angle in angles.items()]
     sines: dict[sp.Symbol, sp.Expr] = {}
     for s in sums:
-        total, sign = fresh(_name_of(s.pair), taken), -1 if s.is_opposite else 1
+        total, sign = taken.fresh(_name_of(s.pair)), -1 if s.is_opposite else 1
         lets.append(Let(total, sp.Add(*[sense * names[part] for sense, part in zip(s.senses, s.parts, strict=True)])))
         sines |= {s.pair[0]: sign * sp.sin(total), s.pair[1]: sign * sp.cos(total)}
     known = {Atan2(*pair): names[pair] for pair in angles}

@@ -12,7 +12,8 @@ from itertools import combinations
 
 import sympy as sp
 
-from derive.constant_parts import words
+from derive.constant_parts import without_sign, words
+from derive.names import Names
 from derive.passes import assemble
 from derive.program import Let, Program, Select, Statement, real, symbols_of
 from derive.unroll import Sign, without_words
@@ -22,7 +23,7 @@ _READABLE = re.compile(r"(?=.{1,60}$)[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 
 def common_parts(program: Program, signs: Sequence[Sign], constants: frozenset[str]) -> Program:
     """The program, unrolled by signs, with its common sums and products under names, but for those of constants alone."""
-    taken = {name.name for name in program.bound()} | {s.name for s in program.inputs}
+    taken = Names.of(program)
     while True:
         found = _most_common(program, constants)
         if not found:
@@ -58,15 +59,11 @@ def _parts(value: sp.Expr) -> Iterator[sp.Expr]:
     if len(terms) > 2:
         for first, second in combinations(terms, 2):
             if not (first.is_number or second.is_number):
-                yield _without_sign(first + second)
+                yield without_sign(first + second)
     for term in terms:
-        product = _without_sign(term)
+        product = without_sign(term)
         if len(terms) > 1 and product.is_Mul and sum(not f.is_number for f in product.args) > 1:
             yield product
-
-
-def _without_sign(value: sp.Expr) -> sp.Expr:
-    return -value if value.could_extract_minus_sign() else value
 
 
 def _negative(name: sp.Symbol | None) -> sp.Expr | None:
@@ -98,16 +95,10 @@ def _read(value: sp.Expr, part: sp.Expr, name: sp.Expr) -> sp.Expr:
     return value
 
 
-def _name(part: sp.Expr, user: sp.Symbol, signs: Sequence[Sign], taken: set[str]) -> sp.Symbol:
+def _name(part: sp.Expr, user: sp.Symbol, signs: Sequence[Sign], taken: Names) -> sp.Symbol:
     """`a_times_b_front` of `a` and `b_front`; what is too long to say is a part of its first user."""
     stems = {s: real(without_words(s.name, signs)[0]) for s in part.free_symbols}
     said, behind = words(part.xreplace(stems)), {w for s in part.free_symbols for w in without_words(s.name, signs)[1]}
     if not _READABLE.match(said):
         said, behind = f"part_of_{without_words(user.name, signs)[0]}", set(without_words(user.name, signs)[1])
-    stem = "_".join([said, *(word for sign in signs for word in sign.words if word in behind)])
-    number, proposal = 1, stem
-    while proposal.replace("_", "") in {t.replace("_", "") for t in taken}:
-        number += 1
-        proposal = f"{stem}_{number}"
-    taken.add(proposal)
-    return real(proposal)
+    return taken.fresh("_".join([said, *(word for sign in signs for word in sign.words if word in behind)]))

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import sympy as sp
 
+from derive.names import Names
 from derive.passes import with_inputs
 from derive.program import (
     DEGREE,
@@ -22,7 +23,6 @@ from derive.program import (
     Let,
     Output,
     Program,
-    real,
     rewritten,
     symbols_of,
 )
@@ -54,7 +54,7 @@ def constant_parts(programs: Iterable[Program], constants: Iterable[str]) -> tup
 class _Parts:
     def __init__(self, constants: frozenset[str], taken: set[str]) -> None:
         self.constants = constants
-        self.spelled = {name.replace("_", "") for name in constants | taken}
+        self.taken_names = Names(constants | taken)
         self.names: dict[sp.Expr, sp.Symbol] = {}
 
     def taken(self, value: sp.Basic) -> sp.Basic:
@@ -85,17 +85,9 @@ class _Parts:
         if value.is_Pow and value.exp < 0 or (value.is_Mul and all(f.as_base_exp()[1] < 0 for f in value.args)):
             return 1 / self._named(1 / value)
         if value not in self.names:
-            self.names[value] = self._fresh(words(value))
+            said = words(value)
+            self.names[value] = self.taken_names.fresh(said if _READABLE.match(said) else "constant_part")
         return self.names[value]
-
-    def _fresh(self, stem: str) -> sp.Symbol:
-        stem = stem if _READABLE.match(stem) else "constant_part"
-        number, proposal = 1, stem
-        while proposal.replace("_", "") in self.spelled:
-            number += 1
-            proposal = f"{stem}_{number}"
-        self.spelled.add(proposal.replace("_", ""))
-        return real(proposal)
 
 
 def words(value: sp.Expr) -> str:
@@ -108,7 +100,7 @@ def words(value: sp.Expr) -> str:
         return f"{words(value.base)}_squared"
     if value.is_Add:
         terms = sorted(value.args, key=lambda t: (t.could_extract_minus_sign(), t.is_Number, str(t)))
-        said = [("_minus_" if t.could_extract_minus_sign() else "_plus_") + words(_without_sign(t)) for t in terms]
+        said = [("_minus_" if t.could_extract_minus_sign() else "_plus_") + words(without_sign(t)) for t in terms]
         return "".join(said).removeprefix("_plus_")
     if value.is_Mul:
         above, below = value.as_numer_denom()
@@ -120,6 +112,6 @@ def words(value: sp.Expr) -> str:
     return "constant_part"
 
 
-def _without_sign(term: sp.Expr) -> sp.Expr:
+def without_sign(term: sp.Expr) -> sp.Expr:
     """The term without its minus sign."""
     return -term if term.could_extract_minus_sign() else term

@@ -8,14 +8,15 @@ Both also hold for what is made of a direction: a direction that it turns, or th
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import permutations, product
 
 import sympy as sp
 
-from derive.passes import assemble, fresh, is_read_once, names_of
-from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Root, Select, reads, real, rewritten, symbols_of
+from derive.names import Names
+from derive.passes import assemble, is_read_once
+from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Root, Select, reads, rewritten, symbols_of
 
 _AXES = {"cos": "x", "sin": "y"}
 Pair = tuple[sp.Symbol, sp.Symbol]
@@ -45,7 +46,7 @@ class _Amount:
 
 def _added(program: Program) -> Program:
     """The program with the angle of a rotated direction as a sum of angles, where this needs no more of them."""
-    axes = {let.name: pair for let in program.lets() for pair in [_direction_of(let)] if pair is not None}
+    axes = {let.name: pair for let in program.lets() for pair in [direction_of(let)] if pair is not None}
     values = {let.name: let.value for let in program.lets()}
     sums: dict[Pair, _Amount] = {}
     for name, pair in axes.items():
@@ -59,9 +60,9 @@ def _added(program: Program) -> Program:
 
 
 def _with_sums(program: Program, sums: Mapping[Pair, _Amount]) -> Program:
-    taken = names_of(program)
+    taken = Names.of(program)
     parts = {p: whole for whole, amount in sums.items() for _, p in amount.terms if p not in sums}
-    angles = {p: fresh(_angle_name(p, whole), taken) for p, whole in parts.items()}
+    angles = {p: taken.fresh(_angle_name(p, whole)) for p, whole in parts.items()}
     values: dict[sp.Basic, sp.Basic] = {Atan2(*pair): name for pair, name in angles.items()}
     for pair, amount in sums.items():
         total = sp.Add(*[sign * values.get(Atan2(*p), Atan2(*p)) for sign, p in amount.terms])
@@ -70,7 +71,7 @@ def _with_sums(program: Program, sums: Mapping[Pair, _Amount]) -> Program:
     body = []
     for s in program.body:
         changed = rewritten(s, lambda e: e.xreplace(values))
-        whole = _direction_of(s) if isinstance(s, Let) else None
+        whole = direction_of(s) if isinstance(s, Let) else None
         if isinstance(changed, Let) and whole is not None and whole in sums:
             changed = replace(changed, note=_joined(notes[whole[1]], changed.note))
         body.append(changed)
@@ -78,13 +79,13 @@ def _with_sums(program: Program, sums: Mapping[Pair, _Amount]) -> Program:
     return assemble(program.name, (*lets, *body), program.outputs) if sums else program
 
 
-def _angle_name(pair: Pair, whole: Pair) -> sp.Symbol:
+def _angle_name(pair: Pair, whole: Pair) -> str:
     """`angle_q2` of `sin_q2`, `cos_q2`; what has no angle's name is called after the angle that it leads to."""
     own = pair[1].name.removeprefix("cos_")
-    return real(f"angle_{own}" if own != pair[1].name else f"angle_with_{whole[1].name.removeprefix('cos_')}")
+    return f"angle_{own}" if own != pair[1].name else f"angle_with_{whole[1].name.removeprefix('cos_')}"
 
 
-def _direction_of(let: Let) -> Pair | None:
+def direction_of(let: Let) -> Pair | None:
     """What the angle of an axis is taken of, its turn chosen afterwards."""
     if not isinstance(let.value, NearestPeriod):
         return None
@@ -195,7 +196,8 @@ def _without_division(
     program: Program, names: frozenset[sp.Symbol], length: sp.Symbol, graded: frozenset[sp.Symbol]
 ) -> Program:
     """The program with the names, called what they then are, in proportion to what they were."""
-    called = {name: _called(name, names_of(program)) for name in sorted(graded, key=str)}
+    taken = Names.of(program)
+    called = {name: _called(name, taken) for name in sorted(graded, key=str)}
     body = []
     for s in program.body:
         if isinstance(s, Let) and s.name in graded:
@@ -224,12 +226,12 @@ def _joined(*notes: str) -> str:
     return "; ".join(note for note in notes if note)
 
 
-def _called(name: sp.Symbol, taken: Collection[str]) -> sp.Symbol:
+def _called(name: sp.Symbol, taken: Names) -> sp.Symbol:
     """`direction_x_q4` for `cos_q4`, `direction_y_q4` for `sin_q4`, `scaled_r21` for `r21`."""
     word, _, rest = name.name.partition("_")
     if word in ("direction", "scaled"):
         return name
-    return fresh(real(f"direction_{_AXES[word]}_{rest}" if word in _AXES else f"scaled_{name.name}"), taken)
+    return taken.fresh(f"direction_{_AXES[word]}_{rest}" if word in _AXES else f"scaled_{name.name}")
 
 
 def _times(value: sp.Expr, length: sp.Symbol) -> sp.Expr:

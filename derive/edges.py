@@ -12,6 +12,7 @@ from derive.program import (
     DEGREE,
     LARGEST,
     ROTATION,
+    TURN_NOTE,
     Atan2,
     Let,
     NearestPeriod,
@@ -90,7 +91,7 @@ def axis_lets(joint: Joint) -> tuple[Let, ...]:
     near = real(f"near_{joint.key}")
     return (
         *_near(joint, near),
-        Let(joint.axis, NearestPeriod(direction, near), f"{joint.name}: its turn"),
+        Let(joint.axis, NearestPeriod(direction, near), f"{joint.name}{TURN_NOTE}"),
         motor,
     )
 

@@ -7,11 +7,12 @@ hoist   Let(scale_a2, 2*link_length_1*link_length_2)         →  computed once,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import sympy as sp
 
+from derive.names import Names
 from derive.program import (
     DEGREE,
     Call,
@@ -158,7 +159,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
     A program that others call comes before them.
     """
     known = set(constants)
-    local = {name.name for p in programs for name in _varying(p, known)}
+    names_taken = Names(known | {name.name for p in programs for name in _varying(p, known)})
     by_value: dict[sp.Expr, sp.Symbol] = {}
     hoisted: list[Let] = []
     lowered: dict[str, Program] = {}
@@ -174,7 +175,7 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
                 body.append(replace(s, value=value))
                 continue
             if value not in by_value:
-                name = fresh(s.name, known | local)
+                name = names_taken.fresh(s.name.name)
                 known.add(name.name)
                 by_value[value] = name
                 hoisted.append(Let(name, value, s.note))
@@ -210,17 +211,3 @@ def _is_constant(let: Let, program: Program, constants: set[str]) -> bool:
         elif symbol.name not in constants:
             return False
     return True
-
-
-def fresh(name: sp.Symbol, taken: Collection[str]) -> sp.Symbol:
-    """The name, with a number behind it where it is taken."""
-    number, proposal = 1, name.name
-    while proposal in taken:
-        number += 1
-        proposal = f"{name.name}_{number}"
-    return real(proposal)
-
-
-def names_of(program: Program) -> set[str]:
-    """The names that a program reads or binds."""
-    return {s.name for s in (*program.inputs, *program.bound())}

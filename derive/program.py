@@ -73,6 +73,10 @@ UNLIMITED = sp.Integer(10) ** 12
 """Stands for "no limit": beyond anything an input can be."""
 
 
+TURN_NOTE = ": its turn"
+"""How the note ends of a statement that chooses the turn of an axis."""
+
+
 class Status(Enum):
     """The outcome of a call, by its SoftMotion enumerator."""
 

@@ -19,8 +19,10 @@ from itertools import groupby, product
 
 import sympy as sp
 
+from derive.names import Names
 from derive.passes import assemble, renamed
 from derive.program import (
+    TURN_NOTE,
     Call,
     Iterate,
     Let,
@@ -82,7 +84,7 @@ def is_straight(program: Program) -> bool:
 
 def unroll(program: Program, signs: Sequence[Sign]) -> Program:
     """All branches at once; outputs are those of every slot, and its `REFUSAL`, with the words of the slot behind the name."""
-    unroller = _Unroller(tuple(signs), {s.name for s in program.inputs})
+    unroller = _Unroller(tuple(signs), Names(s.name for s in program.inputs))
     for statement in program.body:
         if not isinstance(statement, Require):
             unroller.add(statement)
@@ -109,12 +111,13 @@ def specialised(program: Program, values: Mapping[sp.Symbol, sp.Expr]) -> Progra
     return assemble(program.name, body, [Output(o.name, o.value.xreplace(dict(values))) for o in program.outputs])
 
 
-def principal(program: Program, counted: Collection[sp.Symbol] = ()) -> Program:
+def any_turn(program: Program, counted: Collection[sp.Symbol] = ()) -> Program:
     """The program for inputs that are known to be good: no look at them, and any turn of an axis unless turns are counted."""
 
     def plain(statement: Statement) -> Statement:
         if isinstance(statement, Let) and isinstance(statement.value, NearestPeriod) and statement.name not in counted:
-            return replace(statement, value=statement.value.args[0])
+            notes = [note for note in statement.note.split("; ") if not note.endswith(TURN_NOTE)]
+            return replace(statement, value=statement.value.args[0], note="; ".join(notes))
         return statement
 
     kept = [plain(s) for s in program.body if not (isinstance(s, Require) and s.otherwise is Status.BAD_INPUT)]
@@ -130,7 +133,7 @@ def counted_turns(program: Program) -> frozenset[sp.Symbol]:
 @dataclass
 class _Unroller:
     signs: tuple[Sign, ...]
-    taken: set[str]
+    taken: Names
     body: list[Statement] = field(default_factory=list)
     _support: dict[sp.Symbol, tuple[int, ...]] = field(default_factory=dict)
     """The signs that a name depends on, by index."""
@@ -157,7 +160,7 @@ class _Unroller:
                 self._names[changed.name, choice] = self._bound(changed, support, choice)
                 continue
             names = {name: self._fresh(name.name, support, choice) for name in binds(statement)}
-            self.body.append(renamed(changed, lambda n, names=names: names[n]))  # type: ignore[misc]
+            self.body.append(renamed(changed, names.__getitem__))
             self._names |= {(name, choice): new for name, new in names.items()}
         self._support |= dict.fromkeys(binds(statement), support)
 
@@ -245,14 +248,7 @@ class _Unroller:
         }
 
     def _fresh(self, name: str, support: tuple[int, ...], choice: Choice) -> sp.Symbol:
-        """A name that differs from all others even where a language joins its words."""
-        stem = suffixed(name, [self.signs[i] for i in support], choice)
-        number, proposal = 1, stem
-        while proposal.replace("_", "") in {t.replace("_", "") for t in self.taken}:
-            number += 1
-            proposal = f"{stem}_{number}"
-        self.taken.add(proposal)
-        return real(proposal)
+        return self.taken.fresh(suffixed(name, [self.signs[i] for i in support], choice))
 
 
 def _is_negative(statement: Statement) -> bool:

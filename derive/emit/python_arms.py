@@ -20,7 +20,7 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 import sympy as sp
 
 from derive.emit.arms import Arms, Item
-from derive.emit.python_layout import WIDTH, fold, taken_apart
+from derive.emit.python_layout import WIDTH, fold, taken_apart, tuple_of
 from derive.emit.python_printer import ScalarPrinter, spelled
 from derive.program import Let, Statement, binds, reads, symbols_of
 
@@ -35,14 +35,14 @@ def array_arm_lines(
         declared = [f"{name}: Real" for name in results]
         return [*declared, *fold(f"if {condition}:"), *_indented(holds), "else:", *_indented(fails)]
     given = sorted(spelled(s.name) for s in _read(arms.fails) - set(constants))
-    function, answer = f"elsewhere_{results[0]}", _tuple(results)
+    function, answer = f"elsewhere_{results[0]}", tuple_of(results)
     return [
         "",
         *fold(f"def {function}({', '.join(f'{name}: Real' for name in given)}) -> Reals:"),
         *_indented([*fails, *fold(f"return {answer}")]),
         "",
         *holds,
-        *_assigned(results, f"elsewhere({condition}, {answer}, {function}, {_tuple(given)})"),
+        *_assigned(results, f"elsewhere({condition}, {answer}, {function}, {tuple_of(given)})"),
     ]
 
 
@@ -70,10 +70,6 @@ def _read(items: Sequence[Item]) -> set[sp.Symbol]:
         found |= read - bound
         bound |= set(item.names if isinstance(item, Arms) else binds(item))
     return found
-
-
-def _tuple(parts: list[str]) -> str:
-    return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"
 
 
 def _indented(lines: list[str]) -> list[str]:

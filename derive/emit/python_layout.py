@@ -38,6 +38,11 @@ def packed(pieces: list[str]) -> list[str]:
     return _packed(pieces, WIDTH - 8)
 
 
+def tuple_of(parts: list[str]) -> str:
+    """Expressions as a tuple."""
+    return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"
+
+
 def taken_apart(targets: list[str], source: str) -> list[str]:
     """`a, b, c = source`, in as many lines as it takes."""
     line = f"{', '.join(targets)} = {source}" if len(targets) > 1 else f"({targets[0]},) = {source}"

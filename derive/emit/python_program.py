@@ -13,7 +13,7 @@ from derive.emit import python_calls
 from derive.emit.arms import Arms, Item, in_arms, spared
 from derive.emit.expression import FUNCTION_KEYS
 from derive.emit.python_arms import array_arm_lines, fixed
-from derive.emit.python_layout import WIDTH, fold, taken_apart
+from derive.emit.python_layout import WIDTH, fold, taken_apart, tuple_of
 from derive.emit.python_loops import array_end, array_head, scalar_end, scalar_head, solve_lines
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, literal, spelled
 from derive.program import (
@@ -280,7 +280,7 @@ def _targets(shape: Shape, read: set[str]) -> str:
         return spelled(shape) if shape in read else "_"
     if not read & set(names(shape)):
         return "_"
-    return _tuple([_targets(s, read) for s in shape])
+    return tuple_of([_targets(s, read) for s in shape])
 
 
 def names(shape: Shape) -> Iterator[str]:
@@ -307,10 +307,6 @@ def _values(method: Method, printer: ScalarPrinter) -> str:
     values = {o.name: printer.print(o.value) for o in method.program.outputs}
 
     def text(shape: Shape) -> str:
-        return values[shape] if isinstance(shape, str) else _tuple([text(s) for s in shape])
+        return values[shape] if isinstance(shape, str) else tuple_of([text(s) for s in shape])
 
     return text(method.result) if method.kind else ""
-
-
-def _tuple(parts: list[str]) -> str:
-    return f"({parts[0]},)" if len(parts) == 1 else f"({', '.join(parts)})"

@@ -12,7 +12,7 @@ from derive.columns import shorter_columns
 from derive.common_parts import common_parts
 from derive.constant_parts import constant_parts
 from derive.emit.arms import in_arms, spared
-from derive.emit.python_layout import fold
+from derive.emit.python_layout import fold, tuple_of
 from derive.emit.python_methods import POSITION, ROTATION, branch
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, primitives_in, spelled
 from derive.emit.python_program import (
@@ -34,10 +34,10 @@ from derive.twins import with_twins
 from derive.unroll import (
     REFUSAL,
     Sign,
+    any_turn,
     choices,
     counted_turns,
     is_straight,
-    principal,
     specialised,
     suffixed,
     unroll,
@@ -87,11 +87,11 @@ def every_branch(kin: Kinematics) -> Program:
 
 
 def branches(kin: Kinematics) -> Program:
-    """All branches in principal values."""
+    """All branches, each axis in any turn."""
     one = shorter_columns(_nearest(kin, kin.branch))
     every = with_twins(unroll(one, signs(kin)))
     counted = [name for name in every.bound() if real(without_words(name.name, signs(kin))[0]) in counted_turns(one)]
-    return common_parts(principal(every, counted), signs(kin), _constants(kin))
+    return common_parts(any_turn(every, counted), signs(kin), _constants(kin))
 
 
 def array_method(kin: Kinematics) -> Method:
@@ -110,7 +110,7 @@ def array_lines(kin: Kinematics, method: Method) -> list[str]:
     lines += [f"{status} = refused(status, {refusal})" for refusal, status in statuses.items() if status != "status"]
     lines.append("return (")
     for choice, refusal in zip(choices(len(kin.branches)), refusals, strict=True):
-        axes = _tuple([values[suffixed(j.axis.name, signs(kin), choice)] for j in kin.mechanism.joints])
+        axes = tuple_of([values[suffixed(j.axis.name, signs(kin), choice)] for j in kin.mechanism.joints])
         lines += fold(f"({axes}, {statuses[refusal]}),", 4)
     return [*lines, ")"]
 
@@ -146,17 +146,18 @@ def _with_constant_parts(kin: Kinematics, methods: Sequence[Method]) -> tuple[li
 def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
     position, rotation, sign_values, _, reference = branch(kin).arguments
     one = shorter_columns(_nearest(kin, kin.branch))
+    single = any_turn(with_twins(one), counted_turns(one))
     return (
         Method(
             "every_branch", "Every slot: its axes, or the number of its status.", every_branch(kin),
             (position, rotation, reference), "tuple[Reals | float, ...]", (),
         ),
         Method(
-            "branches", "Every slot in principal values, of input that is trusted.", branches(kin),
+            "branches", "Every slot, the axes in some turn, of input that is trusted.", branches(kin),
             (_FRAME, reference), "tuple[Reals | None, ...]", (),
         ),
         Method(
-            "branch", "One branch in principal values, of input that is trusted.", principal(with_twins(one), counted_turns(one)),
+            "branch", "One branch, the axes in some turn, of input that is trusted.", single,
             (_FRAME, sign_values, reference), "Reals | None", (),
         ),
     )  # fmt: skip
@@ -192,7 +193,7 @@ def _every(
 def _direction(method: Method) -> list[str]:
     lines = statement_lines(method.program, Refusals(lambda _: "None"), _DIRECTIONS)
     values = [_DIRECTIONS.print(o.value) for o in method.program.outputs]
-    return [*lines, *fold(f"return {_tuple(values)}")]
+    return [*lines, *fold(f"return {tuple_of(values)}")]
 
 
 def _returned(kin: Kinematics, values: Mapping[str, sp.Expr], refused: Callable[[str], str]) -> list[str]:
@@ -200,13 +201,10 @@ def _returned(kin: Kinematics, values: Mapping[str, sp.Expr], refused: Callable[
     lines = ["return ("]
     for choice in choices(len(kin.branches)):
         refusal = values[suffixed(REFUSAL, signs(kin), choice)]
-        axes = _tuple([_DIRECTIONS.print(values[suffixed(j.axis.name, signs(kin), choice)]) for j in kin.mechanism.joints])
+        axes = tuple_of([_DIRECTIONS.print(values[suffixed(j.axis.name, signs(kin), choice)]) for j in kin.mechanism.joints])
         text = axes
         if refusal != 0:
             text = f"{axes} if {_SCALAR.print(refusal)} == 0.0 else {refused(_SCALAR.print(refusal))}"
         lines += fold(f"({text})," if refusal != 0 else f"{text},", 4)
     return [*lines, ")"]
 
-
-def _tuple(parts: list[str]) -> str:
-    return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"

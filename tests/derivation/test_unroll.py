@@ -25,7 +25,7 @@ from derive.program import (
     real,
 )
 from derive.run import run
-from derive.unroll import REFUSAL, Sign, choices, is_straight, principal, specialised, suffixed, unroll, with_limits
+from derive.unroll import REFUSAL, Sign, any_turn, choices, is_straight, specialised, suffixed, unroll, with_limits
 from derive.verify import BrokenProgram, verify
 
 A, B, C, X, Y = (real(n) for n in "abcxy")
@@ -115,13 +115,13 @@ def test_what_is_given_decides_choices() -> None:
     assert specialised(program(choice, outputs={"o": A}), {X: sp.Integer(0)}).outputs == (Output("o", Y),)
 
 
-def test_principal_values_know_no_periods_and_trust_their_input() -> None:
+def test_any_turn_knows_no_periods_and_trusts_its_input() -> None:
     body = (
         Require(sp.Le(sp.Abs(X), 9), Status.BAD_INPUT),
         Require(sp.Gt(X, 0), Status.UNREACHABLE),
         Let(A, NearestPeriod(X + 1, Y)),
     )
-    found = principal(program(*body, outputs={"o": A}))
+    found = any_turn(program(*body, outputs={"o": A}))
     assert lets(found) == {"a": X + 1}
     assert [r.otherwise for r in found.requires()] == [Status.UNREACHABLE]
 

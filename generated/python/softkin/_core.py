@@ -189,8 +189,8 @@ class Mechanism(ABC):
     def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None where it does not reach.
 
-        The input is trusted: plain tuples of floats, with a rotation that is one. Axes are one of their values, a turn
-        more or less is not chosen, and limits are not tested.
+        The input is trusted: plain tuples of floats, with a rotation that is one. An axis that no other moves with
+        is in any of its turns, and limits are not tested.
         """
         return tuple([self.branch(frame, signs, reference) for _, signs in slots((AUTOMATIC,) * self.BRANCHES)])
 

@@ -944,7 +944,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         ref_a1, ref_a2, _, _, _, ref_a6 = reference
         wrist_x = x - d6*r13  # the point that the last joints turn about
@@ -1111,7 +1111,7 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
         refusal_left_down = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left)*RADIAN  # A1: its turn
+        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left)*RADIAN
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
@@ -1125,15 +1125,15 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_up_down = free_a2
             angle_q2_down_down = free_a2
-        axis_a2_left_up_down = offset_a2 + angle_q2_up_down*RADIAN  # A2: its turn
+        axis_a2_left_up_down = offset_a2 + angle_q2_up_down*RADIAN
         angle_q3_down = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_left_up_down = angle_q3_down*RADIAN
-        axis_a3_left_up_down = offset_a3 + part_of_axis_a3_left_up_down  # A3: its turn
+        axis_a3_left_up_down = offset_a3 + part_of_axis_a3_left_up_down
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4: what the sum q234 leaves
         axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)*RADIAN
-        axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN  # A5: its turn
-        axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN  # A6: its turn
+        axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN
+        axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
         if radius_q6 > 1e-11:
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
             r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
@@ -1262,22 +1262,22 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_up_up = free_a2
             angle_q2_down_up = free_a2
-        axis_a2_left_up_up = offset_a2 + angle_q2_up_up*RADIAN  # A2: its turn
+        axis_a2_left_up_up = offset_a2 + angle_q2_up_up*RADIAN
         angle_q3_up = arctan2(sin_q3, cos_q3)
         part_of_axis_a3 = angle_q3_up*RADIAN
-        axis_a3_left_up_up = offset_a3 + part_of_axis_a3  # A3: its turn
+        axis_a3_left_up_up = offset_a3 + part_of_axis_a3
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4: what the sum q234 leaves
         axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)*RADIAN
-        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down  # A5: its turn
-        axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN  # A6: its turn
-        axis_a2_left_down_down = offset_a2 + angle_q2_down_down*RADIAN  # A2: its turn
-        axis_a3_left_down_down = offset_a3 - part_of_axis_a3_left_up_down  # A3: its turn
-        # q4: what the sum q234 leaves; A4: its turn
+        axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down
+        axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
+        axis_a2_left_down_down = offset_a2 + angle_q2_down_down*RADIAN
+        axis_a3_left_down_down = offset_a3 - part_of_axis_a3_left_up_down
+        # q4: what the sum q234 leaves
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_down_down)*RADIAN
-        axis_a2_left_down_up = offset_a2 + angle_q2_down_up*RADIAN  # A2: its turn
-        axis_a3_left_down_up = offset_a3 - part_of_axis_a3  # A3: its turn
-        # q4: what the sum q234 leaves; A4: its turn
+        axis_a2_left_down_up = offset_a2 + angle_q2_down_up*RADIAN
+        axis_a3_left_down_up = offset_a3 - part_of_axis_a3
+        # q4: what the sum q234 leaves
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_down_up)*RADIAN
         cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_right + wrist_y*sin_q1_right
         r21_from_q1 = r21*cos_q1_right - r11*sin_q1_right
@@ -1414,7 +1414,7 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
         refusal_right_down = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right)*RADIAN  # A1: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right)*RADIAN
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
@@ -1428,15 +1428,15 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_up_down = free_a2
             angle_q2_down_down = free_a2
-        axis_a2_right_up_down = offset_a2 + angle_q2_up_down*RADIAN  # A2: its turn
+        axis_a2_right_up_down = offset_a2 + angle_q2_up_down*RADIAN
         angle_q3_down = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_right_up_down = angle_q3_down*RADIAN
-        axis_a3_right_up_down = offset_a3 + part_of_axis_a3_right_up_down  # A3: its turn
+        axis_a3_right_up_down = offset_a3 + part_of_axis_a3_right_up_down
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4: what the sum q234 leaves
         axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)*RADIAN
-        axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN  # A5: its turn
-        axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN  # A6: its turn
+        axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN
+        axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
         if radius_q6 > 1e-11:
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
             r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
@@ -1565,22 +1565,22 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_up_up = free_a2
             angle_q2_down_up = free_a2
-        axis_a2_right_up_up = offset_a2 + angle_q2_up_up*RADIAN  # A2: its turn
+        axis_a2_right_up_up = offset_a2 + angle_q2_up_up*RADIAN
         angle_q3_up = arctan2(sin_q3, cos_q3)
         part_of_axis_a3 = angle_q3_up*RADIAN
-        axis_a3_right_up_up = offset_a3 + part_of_axis_a3  # A3: its turn
+        axis_a3_right_up_up = offset_a3 + part_of_axis_a3
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        # q4: what the sum q234 leaves; A4: its turn
+        # q4: what the sum q234 leaves
         axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)*RADIAN
-        axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down  # A5: its turn
-        axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN  # A6: its turn
-        axis_a2_right_down_down = offset_a2 + angle_q2_down_down*RADIAN  # A2: its turn
-        axis_a3_right_down_down = offset_a3 - part_of_axis_a3_right_up_down  # A3: its turn
-        # q4: what the sum q234 leaves; A4: its turn
+        axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down
+        axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
+        axis_a2_right_down_down = offset_a2 + angle_q2_down_down*RADIAN
+        axis_a3_right_down_down = offset_a3 - part_of_axis_a3_right_up_down
+        # q4: what the sum q234 leaves
         axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_down_down)*RADIAN
-        axis_a2_right_down_up = offset_a2 + angle_q2_down_up*RADIAN  # A2: its turn
-        axis_a3_right_down_up = offset_a3 - part_of_axis_a3  # A3: its turn
-        # q4: what the sum q234 leaves; A4: its turn
+        axis_a2_right_down_up = offset_a2 + angle_q2_down_up*RADIAN
+        axis_a3_right_down_up = offset_a3 - part_of_axis_a3
+        # q4: what the sum q234 leaves
         axis_a4_right_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_down_up)*RADIAN
         return (
             (
@@ -1650,7 +1650,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_shoulder, sigma_elbow, sigma_wrist = signs
         ref_a1, ref_a2, _, _, _, ref_a6 = reference
@@ -1796,7 +1796,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         if reach > machine_scale_times_free_angle:
@@ -1808,14 +1808,13 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2 = free_a2
-        axis_a2 = offset_a2 + angle_q2*RADIAN  # A2: its turn
+        axis_a2 = offset_a2 + angle_q2*RADIAN
         angle_q3 = arctan2(sin_q3, cos_q3)
-        axis_a3 = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a3 = offset_a3 + angle_q3*RADIAN
         angle_with_q4 = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        # q4: what the sum q234 leaves; A4: its turn
-        axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)*RADIAN
-        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5)*RADIAN  # A5: its turn
-        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN  # A6: its turn
+        axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)*RADIAN  # q4: what the sum q234 leaves
+        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5)*RADIAN
+        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     return Unrolled(every_branch, branches, branch)

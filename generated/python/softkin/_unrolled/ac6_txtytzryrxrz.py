@@ -154,7 +154,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         _, _, _, ref_a4, _, _ = reference
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
@@ -184,23 +184,23 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a4_flipped = direction_y_a4_upright
             scaled_r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
             direction_y_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
-        axis_a4 = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright)*RADIAN  # A4: its turn
-        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4)*RADIAN  # A5: its turn
-        axis_a6 = offset_a6 + arctan2(direction_y_a6_upright, scaled_r11_from_a4_upright)*RADIAN  # A6: its turn
+        axis_a4 = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright)*RADIAN
+        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4)*RADIAN
+        axis_a6 = offset_a6 + arctan2(direction_y_a6_upright, scaled_r11_from_a4_upright)*RADIAN
         if radius_a4 > 1e-11:
             direction_of_axis_a4 = 180.0 + axis_a4
             direction_of_axis_a6 = 180.0 + axis_a6
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped)*RADIAN
             direction_of_axis_a6 = offset_a6 + arctan2(direction_y_a6_flipped, scaled_r11_from_a4_flipped)*RADIAN
-        axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4)*RADIAN  # A5: its turn
+        axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4)*RADIAN
         return (
             (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5_upright, axis_a6),
             (axis_a1, axis_a2, axis_a3, direction_of_axis_a4, axis_a5_flipped, direction_of_axis_a6),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         (sigma_wrist,) = signs
         _, _, _, ref_a4, _, _ = reference
@@ -227,11 +227,11 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a4 = sin(free_a4)
             scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
             direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
-        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4)*RADIAN  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4)*RADIAN
         a4_radius_of_a5 = radius_a4*sigma_wrist
         sin_a5 = -r23
-        axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5)*RADIAN  # A5: its turn
-        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN  # A6: its turn
+        axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5)*RADIAN
+        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     return Unrolled(every_branch, branches, branch)

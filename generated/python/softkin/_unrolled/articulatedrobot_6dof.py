@@ -579,7 +579,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         ref_a1, ref_a2, _, ref_a4, _, _ = reference
         wrist_x = x - d6*r13  # the point that the last joints turn about
@@ -619,7 +619,7 @@ def unrolled(k: Constants) -> Unrolled:
             *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
         refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN  # A1: its turn
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         if reach > machine_scale_times_free_angle:
@@ -633,10 +633,10 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        axis_a2_front_down = offset_a2 + angle_q2_down*RADIAN  # A2: its turn
+        axis_a2_front_down = offset_a2 + angle_q2_down*RADIAN
         angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
         angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
-        axis_a3_front_down = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a3_front_down = offset_a3 + angle_q3*RADIAN
         r13_from_q1 = r13*cos_q1_front + r23*sin_q1_front
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
@@ -682,10 +682,9 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
-        axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
+        axis_a4_front_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
-        # A6: its turn
+        axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN
         axis_a6_front_down_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
         )
@@ -697,10 +696,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6_front_down_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
-        axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down  # A5: its turn
-        axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
+        axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down
+        axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN
         angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
-        axis_a3_front_up = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a3_front_up = offset_a3 + angle_q3*RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
@@ -742,10 +741,9 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
-        axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
+        axis_a4_front_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
-        # A6: its turn
+        axis_a5_front_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN
         axis_a6_front_up_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
         )
@@ -757,7 +755,7 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6_front_up_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
-        axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down  # A5: its turn
+        axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down
         wrist_x_from_q1 = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -766,7 +764,7 @@ def unrolled(k: Constants) -> Unrolled:
             *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
         refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN  # A1: its turn
+        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         if reach > machine_scale_times_free_angle:
@@ -780,10 +778,10 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        axis_a2_back_down = offset_a2 + angle_q2_down*RADIAN  # A2: its turn
+        axis_a2_back_down = offset_a2 + angle_q2_down*RADIAN
         angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
         angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
-        axis_a3_back_down = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a3_back_down = offset_a3 + angle_q3*RADIAN
         r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
@@ -829,10 +827,9 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
-        axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
+        axis_a4_back_down_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
-        # A6: its turn
+        axis_a5_back_down_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN
         axis_a6_back_down_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
         )
@@ -844,10 +841,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6_back_down_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
-        axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down  # A5: its turn
-        axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
+        axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down
+        axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN
         angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
-        axis_a3_back_up = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a3_back_up = offset_a3 + angle_q3*RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
@@ -889,10 +886,9 @@ def unrolled(k: Constants) -> Unrolled:
             else:
                 minus_scaled_r21_from_q1234_up = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
                 minus_scaled_r22_from_q1234_up = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
-        axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN  # A4: its turn
+        axis_a4_back_up_down = offset_a4 + arctan2(direction_y_q4_down, direction_x_q4_down)*RADIAN
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN  # A5: its turn
-        # A6: its turn
+        axis_a5_back_up_down = offset_a5 + arctan2(radius_q4, cos_q5)*RADIAN
         axis_a6_back_up_down = (
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_down, minus_scaled_r22_from_q1234_down)*RADIAN
         )
@@ -904,7 +900,7 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6_back_up_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
-        axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down  # A5: its turn
+        axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down
         return (
             (
                 (
@@ -973,7 +969,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_arm, sigma_elbow, sigma_hand = signs
         ref_a1, ref_a2, _, ref_a4, _, _ = reference
@@ -1008,7 +1004,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         if reach > machine_scale_times_free_angle:
@@ -1020,10 +1016,10 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2 = free_a2
-        axis_a2 = offset_a2 + angle_q2*RADIAN  # A2: its turn
+        axis_a2 = offset_a2 + angle_q2*RADIAN
         angle_of_swing_q3 = arctan2(sin_swing_q3, cos_swing_q3)
         angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
-        axis_a3 = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a3 = offset_a3 + angle_q3*RADIAN
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
         angle_q23 = angle_q2 + angle_q3
         sin_q23 = sin(angle_q23)
@@ -1055,11 +1051,10 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1 = r22*cos_q1 - r12*sin_q1
             r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
             minus_scaled_r22_from_q1234 = direction_x_q4*r22_from_q1 + direction_y_q4*r12_from_q123
-        axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN  # A4: its turn
+        axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN
         q4_radius_of_q5 = radius_q4*sigma_hand
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5)*RADIAN  # A5: its turn
-        # A6: its turn
+        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5)*RADIAN
         axis_a6 = offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 

@@ -60,7 +60,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
@@ -68,13 +68,13 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return 1*(None,)
-        axis_c = offset_c + arctan2(heading_across, heading_along)*RADIAN  # C: its turn
+        axis_c = offset_c + arctan2(heading_across, heading_along)*RADIAN
         return (
             (axis_c,),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
@@ -82,7 +82,7 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return None
-        axis_c = offset_c + arctan2(heading_across, heading_along)*RADIAN  # C: its turn
+        axis_c = offset_c + arctan2(heading_across, heading_along)*RADIAN
         return (axis_c,)
 
     return Unrolled(every_branch, branches, branch)

@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         _, ref_theta, ref_phi = reference
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
@@ -91,7 +91,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN  # Theta: its turn
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN
         # its reference where it is free
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
@@ -106,7 +106,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         _, ref_theta, ref_phi = reference
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
@@ -120,7 +120,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN  # Theta: its turn
+        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN
         # its reference where it is free
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z

@@ -415,7 +415,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         span_1_x = x - constant_part  # rod 1
         span_1_y = y - constant_part_2  # rod 1
@@ -532,9 +532,9 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
-        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
-        axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
+        axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 + sin_swing_a3_times_z_by_divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x_inward = x - pivot_3_x
@@ -553,7 +553,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
+        axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 + sin_swing_a2_times_z_by_divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x_inward = x - pivot_2_x
@@ -572,7 +572,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         type2_rods_coplanar = (
             constant_part_7
             *(
@@ -601,7 +601,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         type2_rods_coplanar = (
             constant_part_7
             *(
@@ -644,7 +644,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
         span_1_x = x - constant_part  # rod 1
@@ -741,9 +741,9 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         return (axis_a1, axis_a2, axis_a3)
 
     return Unrolled(every_branch, branches, branch)

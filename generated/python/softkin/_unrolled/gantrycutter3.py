@@ -84,7 +84,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
@@ -96,13 +96,13 @@ def unrolled(k: Constants) -> Unrolled:
         axis_y = offset_y + y
         axis_z = offset_z + z
         direction_y_r = direction_r*heading_across
-        axis_r = offset_r + arctan2(direction_y_r, heading_along)*RADIAN  # R: its turn
+        axis_r = offset_r + arctan2(direction_y_r, heading_along)*RADIAN
         return (
             (axis_x, axis_y, axis_z, axis_r),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
@@ -114,7 +114,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_y = offset_y + y
         axis_z = offset_z + z
         direction_y_r = direction_r*heading_across
-        axis_r = offset_r + arctan2(direction_y_r, heading_along)*RADIAN  # R: its turn
+        axis_r = offset_r + arctan2(direction_y_r, heading_along)*RADIAN
         return (axis_x, axis_y, axis_z, axis_r)
 
     return Unrolled(every_branch, branches, branch)

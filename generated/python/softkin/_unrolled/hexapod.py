@@ -400,7 +400,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         platform_1_z_times_r13 = platform_1_z*r13
         platform_1_x_times_r11_plus_platform_1_y_times_r12 = platform_1_x*r11 + platform_1_y*r12
@@ -650,7 +650,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1
         span_1_y = y + platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23 - base_1_y  # rod 1

@@ -142,7 +142,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         _, _, _, ref_a, _ = reference
         wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
@@ -166,21 +166,21 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a_positive = sin(free_a)
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
-        axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive)*RADIAN  # A: its turn
-        axis_b_positive = offset_b + arctan2(radius_a, r33)*RADIAN  # B: its turn
+        axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive)*RADIAN
+        axis_b_positive = offset_b + arctan2(radius_a, r33)*RADIAN
         direction_of_axis_a = (
             180.0 + axis_a
             if radius_a > 1e-11
             else offset_a + arctan2(direction_y_a_negative, direction_x_a_negative)*RADIAN
         )
-        axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
+        axis_b_negative = offset_b_times_2 - axis_b_positive
         return (
             (axis_x, axis_y, axis_z, axis_a, axis_b_positive),
             (axis_x, axis_y, axis_z, direction_of_axis_a, axis_b_negative),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_roll,) = signs
         _, _, _, ref_a, _ = reference
@@ -201,9 +201,9 @@ def unrolled(k: Constants) -> Unrolled:
             free_a = (ref_a - offset_a)*DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
-        axis_a = offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN  # A: its turn
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN
         a_radius_of_b = radius_a*sigma_roll
-        axis_b = offset_b + arctan2(a_radius_of_b, r33)*RADIAN  # B: its turn
+        axis_b = offset_b + arctan2(a_radius_of_b, r33)*RADIAN
         return (axis_x, axis_y, axis_z, axis_a, axis_b)
 
     return Unrolled(every_branch, branches, branch)

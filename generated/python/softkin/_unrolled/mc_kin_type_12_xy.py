@@ -455,7 +455,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -638,9 +638,9 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_left_left = 3.0
             refusal_left_right = 3.0
-        axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
-        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)*RADIAN  # A2: its turn
-        axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)*RADIAN  # A2: its turn
+        axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)*RADIAN
+        axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)*RADIAN
         sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
         cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
         along_a2 = (
@@ -770,9 +770,9 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_right_left = 3.0
             refusal_right_right = 3.0
-        axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
-        axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)*RADIAN  # A2: its turn
-        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)*RADIAN  # A2: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+        axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)*RADIAN
+        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)*RADIAN
         return (
             ((axis_a1_left, axis_a2_left_left) if refusal_left_left == 0.0 else None),
             ((axis_a1_right, axis_a2_right_left) if refusal_right_left == 0.0 else None),
@@ -781,7 +781,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_t, sigma_w = signs
         # z: a planar machine has none
@@ -907,8 +907,8 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         return (axis_a1, axis_a2)
 
     return Unrolled(every_branch, branches, branch)

@@ -184,7 +184,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
@@ -248,8 +248,8 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_outward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
-        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
-        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
         rod_2_x_inward = x - pivot_2_x
@@ -259,7 +259,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
-        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_y_by_divisor_a1
         pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
@@ -269,7 +269,7 @@ def unrolled(k: Constants) -> Unrolled:
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_outward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
-        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_inward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
@@ -281,7 +281,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2 = signs
         # z: a planar machine has none
@@ -339,8 +339,8 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         return (axis_a1, axis_a2)
 
     return Unrolled(every_branch, branches, branch)

@@ -119,7 +119,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         ref_a1, _ = reference
         # z: a planar machine has none
@@ -148,20 +148,18 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        axis_a1_right = offset_a1 + angle_a1_right*RADIAN  # A1: its turn
+        axis_a1_right = offset_a1 + angle_a1_right*RADIAN
         angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
-        # a2: what the sum a2_from_a1 leaves; A2: its turn
-        axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)*RADIAN
-        axis_a1_left = offset_a1 + angle_a1_left*RADIAN  # A1: its turn
-        # a2: what the sum a2_from_a1 leaves; A2: its turn
-        axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)*RADIAN
+        axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves
+        axis_a1_left = offset_a1 + angle_a1_left*RADIAN
+        axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves
         return (
             (axis_a1_right, axis_a2_right),
             (axis_a1_left, axis_a2_left),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         (sigma_elbow,) = signs
         ref_a1, _ = reference
@@ -189,9 +187,9 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1 = free_a1
-        axis_a1 = offset_a1 + angle_a1*RADIAN  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1*RADIAN
         angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
-        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves; A2: its turn
+        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves
         return (axis_a1, axis_a2)
 
     return Unrolled(every_branch, branches, branch)

@@ -65,7 +65,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         ref_c, _, _ = reference
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
@@ -77,7 +77,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN  # C: its turn
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN
         axis_r = offset_r + radius_c
         axis_z = offset_z + z
         return (
@@ -85,7 +85,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         ref_c, _, _ = reference
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
@@ -97,7 +97,7 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN  # C: its turn
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN
         axis_r = offset_r + radius_c
         axis_z = offset_z + z
         return (axis_c, axis_r, axis_z)

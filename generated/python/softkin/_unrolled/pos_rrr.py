@@ -211,7 +211,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         ref_a1, ref_a2, _ = reference
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
@@ -248,7 +248,7 @@ def unrolled(k: Constants) -> Unrolled:
             *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
         refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN  # A1: its turn
+        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         if reach > machine_scale_times_free_angle:
@@ -262,13 +262,13 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        axis_a2_front_down = offset_a2 + angle_q2_down*RADIAN  # A2: its turn
+        axis_a2_front_down = offset_a2 + angle_q2_down*RADIAN
         angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
         angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
-        axis_a3_front_down = offset_a3 + angle_q3*RADIAN  # A3: its turn
-        axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
+        axis_a3_front_down = offset_a3 + angle_q3*RADIAN
+        axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN
         angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
-        axis_a3_front_up = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a3_front_up = offset_a3 + angle_q3*RADIAN
         wrist_x_from_q1 = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -277,7 +277,7 @@ def unrolled(k: Constants) -> Unrolled:
             *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
         refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN  # A1: its turn
+        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN
         sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         if reach > machine_scale_times_free_angle:
@@ -291,13 +291,13 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        axis_a2_back_down = offset_a2 + angle_q2_down*RADIAN  # A2: its turn
+        axis_a2_back_down = offset_a2 + angle_q2_down*RADIAN
         angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
         angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
-        axis_a3_back_down = offset_a3 + angle_q3*RADIAN  # A3: its turn
-        axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN  # A2: its turn
+        axis_a3_back_down = offset_a3 + angle_q3*RADIAN
+        axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN
         angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
-        axis_a3_back_up = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a3_back_up = offset_a3 + angle_q3*RADIAN
         return (
             ((axis_a1_front, axis_a2_front_down, axis_a3_front_down) if refusal_front == 0.0 else None),
             ((axis_a1_back, axis_a2_back_down, axis_a3_back_down) if refusal_back == 0.0 else None),
@@ -306,7 +306,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_arm, sigma_elbow = signs
         ref_a1, ref_a2, _ = reference
@@ -338,7 +338,7 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (sine_square_q3 >= -1e-12):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN  # A1: its turn
+        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN
         sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         if reach > machine_scale_times_free_angle:
@@ -350,10 +350,10 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2 = free_a2
-        axis_a2 = offset_a2 + angle_q2*RADIAN  # A2: its turn
+        axis_a2 = offset_a2 + angle_q2*RADIAN
         angle_of_swing_q3 = arctan2(sin_swing_q3, cos_swing_q3)
         angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
-        axis_a3 = offset_a3 + angle_q3*RADIAN  # A3: its turn
+        axis_a3 = offset_a3 + angle_q3*RADIAN
         return (axis_a1, axis_a2, axis_a3)
 
     return Unrolled(every_branch, branches, branch)

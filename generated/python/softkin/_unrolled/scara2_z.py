@@ -111,7 +111,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         ref_a1, _, _ = reference
         reach = sqrt(x*x + y*y)
@@ -136,18 +136,18 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        axis_a1_right = offset_a1 + angle_a1_right*RADIAN  # A1: its turn
-        axis_a2_right = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a1_right = offset_a1 + angle_a1_right*RADIAN
+        axis_a2_right = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_z = offset_z + z
-        axis_a1_left = offset_a1 + angle_a1_left*RADIAN  # A1: its turn
-        axis_a2_left = offset_a2_times_2 - axis_a2_right  # A2: its turn
+        axis_a1_left = offset_a1 + angle_a1_left*RADIAN
+        axis_a2_left = offset_a2_times_2 - axis_a2_right
         return (
             (axis_a1_right, axis_a2_right, axis_z),
             (axis_a1_left, axis_a2_left, axis_z),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         (sigma_elbow,) = signs
         ref_a1, _, _ = reference
@@ -171,8 +171,8 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1 = free_a1
-        axis_a1 = offset_a1 + angle_a1*RADIAN  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a1 = offset_a1 + angle_a1*RADIAN
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_z = offset_z + z
         return (axis_a1, axis_a2, axis_z)
 

@@ -151,7 +151,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         ref_a1, _, _, _ = reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
@@ -187,25 +187,23 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        axis_a1_right = offset_a1 + angle_a1_right*RADIAN  # A1: its turn
+        axis_a1_right = offset_a1 + angle_a1_right*RADIAN
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2*RADIAN
-        axis_a2_right = offset_a2 + part_of_axis_a2  # A2: its turn
+        axis_a2_right = offset_a2 + part_of_axis_a2
         angle_heading = arctan2(sin_heading, cos_heading)
-        # a3: what the sum a123 leaves; A3: its turn
-        axis_a3_right = offset_a3 + (angle_heading - angle_a1_right - angle_a2)*RADIAN
+        axis_a3_right = offset_a3 + (angle_heading - angle_a1_right - angle_a2)*RADIAN  # a3: what the sum a123 leaves
         axis_z = offset_z + z
-        axis_a1_left = offset_a1 + angle_a1_left*RADIAN  # A1: its turn
-        axis_a2_left = offset_a2 - part_of_axis_a2  # A2: its turn
-        # a3: what the sum a123 leaves; A3: its turn
-        axis_a3_left = offset_a3 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN
+        axis_a1_left = offset_a1 + angle_a1_left*RADIAN
+        axis_a2_left = offset_a2 - part_of_axis_a2
+        axis_a3_left = offset_a3 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN  # a3: what the sum a123 leaves
         return (
             (axis_a1_right, axis_a2_right, axis_a3_right, axis_z),
             (axis_a1_left, axis_a2_left, axis_a3_left, axis_z),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
         ref_a1, _, _, _ = reference
@@ -240,12 +238,11 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1 = free_a1
-        axis_a1 = offset_a1 + angle_a1*RADIAN  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1*RADIAN
         angle_a2 = arctan2(sin_a2, cos_a2)
-        axis_a2 = offset_a2 + angle_a2*RADIAN  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2*RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)
-        # a3: what the sum a123 leaves; A3: its turn
-        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2)*RADIAN
+        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2)*RADIAN  # a3: what the sum a123 leaves
         axis_z = offset_z + z
         return (axis_a1, axis_a2, axis_a3, axis_z)
 

@@ -151,7 +151,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         _, ref_a2, _, _ = reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
@@ -188,24 +188,22 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_a2_right = free_a2
             angle_a2_left = free_a2
-        axis_a2_right = offset_a2 + angle_a2_right*RADIAN  # A2: its turn
+        axis_a2_right = offset_a2 + angle_a2_right*RADIAN
         angle_a3 = arctan2(sin_a3, cos_a3)
         part_of_axis_a3 = angle_a3*RADIAN
-        axis_a3_right = offset_a3 + part_of_axis_a3  # A3: its turn
+        axis_a3_right = offset_a3 + part_of_axis_a3
         angle_heading = arctan2(sin_heading, cos_heading)
-        # a4: what the sum a234 leaves; A4: its turn
-        axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3)*RADIAN
-        axis_a2_left = offset_a2 + angle_a2_left*RADIAN  # A2: its turn
-        axis_a3_left = offset_a3 - part_of_axis_a3  # A3: its turn
-        # a4: what the sum a234 leaves; A4: its turn
-        axis_a4_left = offset_a4 + (angle_a3 + angle_heading - angle_a2_left)*RADIAN
+        axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3)*RADIAN  # a4: what the sum a234 leaves
+        axis_a2_left = offset_a2 + angle_a2_left*RADIAN
+        axis_a3_left = offset_a3 - part_of_axis_a3
+        axis_a4_left = offset_a4 + (angle_a3 + angle_heading - angle_a2_left)*RADIAN  # a4: what the sum a234 leaves
         return (
             (axis_a1, axis_a2_right, axis_a3_right, axis_a4_right),
             (axis_a1, axis_a2_left, axis_a3_left, axis_a4_left),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
         _, ref_a2, _, _ = reference
@@ -241,12 +239,11 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_a2 = free_a2
-        axis_a2 = offset_a2 + angle_a2*RADIAN  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2*RADIAN
         angle_a3 = arctan2(sin_a3, cos_a3)
-        axis_a3 = offset_a3 + angle_a3*RADIAN  # A3: its turn
+        axis_a3 = offset_a3 + angle_a3*RADIAN
         angle_heading = arctan2(sin_heading, cos_heading)
-        # a4: what the sum a234 leaves; A4: its turn
-        axis_a4 = offset_a4 + (angle_heading - angle_a2 - angle_a3)*RADIAN
+        axis_a4 = offset_a4 + (angle_heading - angle_a2 - angle_a3)*RADIAN  # a4: what the sum a234 leaves
         return (axis_a1, axis_a2, axis_a3, axis_a4)
 
     return Unrolled(every_branch, branches, branch)

@@ -153,7 +153,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         ref_a1, _, _, ref_a4 = reference
         # projection: the tool direction swings to the machine's, the twist is kept
@@ -185,10 +185,10 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        axis_a1_right = offset_a1 + angle_a1_right*RADIAN  # A1: its turn
+        axis_a1_right = offset_a1 + angle_a1_right*RADIAN
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2*RADIAN
-        axis_a2_right = offset_a2 + part_of_axis_a2  # A2: its turn
+        axis_a2_right = offset_a2 + part_of_axis_a2
         angle_heading = arctan2(heading_across, heading_along)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
@@ -198,8 +198,8 @@ def unrolled(k: Constants) -> Unrolled:
         a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc_by_360*RADIAN - a4*gear_coupling*RADIAN  # a3: affine in the z equation
         axis_a3_right = a3 + offset_a3
-        axis_a1_left = offset_a1 + angle_a1_left*RADIAN  # A1: its turn
-        axis_a2_left = offset_a2 - part_of_axis_a2  # A2: its turn
+        axis_a1_left = offset_a1 + angle_a1_left*RADIAN
+        axis_a2_left = offset_a2 - part_of_axis_a2
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
         axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left)/DEGREE
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
@@ -213,7 +213,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
         ref_a1, _, _, ref_a4 = reference
@@ -244,9 +244,9 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1 = free_a1
-        axis_a1 = offset_a1 + angle_a1*RADIAN  # A1: its turn
+        axis_a1 = offset_a1 + angle_a1*RADIAN
         angle_a2 = arctan2(sin_a2, cos_a2)
-        axis_a2 = offset_a2 + angle_a2*RADIAN  # A2: its turn
+        axis_a2 = offset_a2 + angle_a2*RADIAN
         angle_heading = arctan2(heading_across, heading_along)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn

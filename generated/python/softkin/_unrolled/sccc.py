@@ -196,7 +196,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         ref_a1, ref_a2, _ = reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
@@ -261,7 +261,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
         angle_heading = arctan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2_right - offset_a2)
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3: what the sum a123 leaves
         axis_a3_right = (
             offset_a3 + (angle_heading - angle_a1_right - angle_a2)*RADIAN
             - (coupling_13*motor_a1_right + coupling_23*motor_a2)*RADIAN
@@ -270,7 +270,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
         motor_a2 = DEGREE*(axis_a2_left - offset_a2)
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3: what the sum a123 leaves
         axis_a3_left = (
             offset_a3 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN
             - (coupling_13*motor_a1_left + coupling_23*motor_a2)*RADIAN
@@ -281,7 +281,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
         ref_a1, ref_a2, _ = reference
@@ -338,7 +338,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a2 = nearest_period(axis_a2, open_a2)
         angle_heading = arctan2(sin_heading, cos_heading)
         motor_a2 = DEGREE*(axis_a2 - offset_a2)
-        # a3: what the sum a123 leaves; A3: its turn
+        # a3: what the sum a123 leaves
         axis_a3 = (
             offset_a3 + (angle_heading - angle_a1 - angle_a2)*RADIAN
             - (coupling_13*motor_a1 + coupling_23*motor_a2)*RADIAN

@@ -289,7 +289,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         span_1_x = constant_part + x  # rod 1
         span_1_y = constant_part_2 + y  # rod 1
@@ -440,7 +440,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
         span_1_x = constant_part + x  # rod 1

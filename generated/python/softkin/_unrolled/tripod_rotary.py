@@ -467,7 +467,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         span_1_x = arm_1_radius_minus_constant_part + x  # rod 1
         span_1_z_squared = -constant_part
@@ -626,9 +626,9 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
-        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
-        axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
+        axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+        axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
+        axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         cos_a3 = across_a2_times_sin_swing_a3_by_divisor_a3 + along_a3_times_cos_swing_a3_by_divisor_a3
         pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x_inward = x - pivot_3_x
@@ -657,7 +657,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
+        axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
         pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x_inward = x - pivot_2_x
@@ -686,7 +686,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
+        axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_3 = (
             rod_2_x_inward*rod_3_z_inward*y - rod_2_z_inward*rod_3_x_inward*y
         )
@@ -723,7 +723,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_inward_outward_outward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
+        axis_a1_inward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_outward*rod_3_z_inward + rod_1_z*rod_2_x_outward*rod_3_y_inward
@@ -766,7 +766,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
         span_1_x = arm_1_radius_minus_constant_part + x  # rod 1
@@ -905,9 +905,9 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN  # A1: its turn
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN  # A2: its turn
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN  # A3: its turn
+        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
+        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         return (axis_a1, axis_a2, axis_a3)
 
     return Unrolled(every_branch, branches, branch)

@@ -106,7 +106,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         _, ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         ref_a, _ = reference
         r13_of_a = r13/tool_side
@@ -124,21 +124,21 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a_positive = sin(free_a)
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
-        axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive)*RADIAN  # A: its turn
-        axis_b_positive = offset_b + arctan2(radius_a, r33)*RADIAN  # B: its turn
+        axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive)*RADIAN
+        axis_b_positive = offset_b + arctan2(radius_a, r33)*RADIAN
         direction_of_axis_a = (
             180.0 + axis_a
             if radius_a > 1e-11
             else offset_a + arctan2(direction_y_a_negative, direction_x_a_negative)*RADIAN
         )
-        axis_b_negative = offset_b_times_2 - axis_b_positive  # B: its turn
+        axis_b_negative = offset_b_times_2 - axis_b_positive
         return (
             (axis_a, axis_b_positive),
             (direction_of_axis_a, axis_b_negative),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         _, ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_roll,) = signs
         ref_a, _ = reference
@@ -153,9 +153,9 @@ def unrolled(k: Constants) -> Unrolled:
             free_a = (ref_a - offset_a)*DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
-        axis_a = offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN  # A: its turn
+        axis_a = offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN
         a_radius_of_b = radius_a*sigma_roll
-        axis_b = offset_b + arctan2(a_radius_of_b, r33)*RADIAN  # B: its turn
+        axis_b = offset_b + arctan2(a_radius_of_b, r33)*RADIAN
         return (axis_a, axis_b)
 
     return Unrolled(every_branch, branches, branch)

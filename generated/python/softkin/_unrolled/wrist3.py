@@ -117,7 +117,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
 
     def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
-        """Every slot in principal values, of input that is trusted."""
+        """Every slot, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
         _, _, ref_c = reference
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
@@ -133,9 +133,9 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_c_up = direction_y_c_down
         scaled_r22_before_c = direction_x_c_down*r22 + direction_y_c_down*r21
         direction_y_a = -direction_x_c_down*r12 - direction_y_c_down*r11
-        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN  # A: its turn
-        axis_b_down = offset_b + arctan2(radius_c, r33)*RADIAN  # B: its turn
-        axis_c = offset_c + arctan2(direction_y_c_down, direction_x_c_down)*RADIAN  # C: its turn
+        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN
+        axis_b_down = offset_b + arctan2(radius_c, r33)*RADIAN
+        axis_c = offset_c + arctan2(direction_y_c_down, direction_x_c_down)*RADIAN
         if radius_c > 1e-11:
             direction_of_axis_a = 180.0 + axis_a
             direction_of_axis_c = 180.0 + axis_c
@@ -144,14 +144,14 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a = -direction_x_c_up*r12 - direction_y_c_up*r11
             direction_of_axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN
             direction_of_axis_c = offset_c + arctan2(direction_y_c_up, direction_x_c_up)*RADIAN
-        axis_b_up = offset_b_times_2 - axis_b_down  # B: its turn
+        axis_b_up = offset_b_times_2 - axis_b_down
         return (
             (axis_a, axis_b_down, axis_c),
             (direction_of_axis_a, axis_b_up, direction_of_axis_c),
         )
 
     def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
-        """One branch in principal values, of input that is trusted."""
+        """One branch, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
         (sigma_hand,) = signs
         _, _, ref_c = reference
@@ -166,10 +166,10 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_c = sin(free_c)
         scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
         direction_y_a = -direction_x_c*r12 - direction_y_c*r11
-        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN  # A: its turn
+        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN
         c_radius_of_b = radius_c*sigma_hand
-        axis_b = offset_b + arctan2(c_radius_of_b, r33)*RADIAN  # B: its turn
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN  # C: its turn
+        axis_b = offset_b + arctan2(c_radius_of_b, r33)*RADIAN
+        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN
         return (axis_a, axis_b, axis_c)
 
     return Unrolled(every_branch, branches, branch)
