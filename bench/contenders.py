@@ -60,6 +60,9 @@ def _ours(table: Table) -> list[Contender]:
     def frames(poses: Array) -> list[Any]:
         return [softkin.Frame(*f) for f in zip(_tuples(1000.0 * poses[:, :3, 3]), _tuples(poses[:, :3, :3]), strict=True)]
 
+    def plain(poses: Array) -> list[Any]:
+        return [tuple(frame) for frame in frames(poses)]
+
     def arrays(poses: Array) -> tuple[Array, Array]:
         return np.ascontiguousarray(1000.0 * poses[:, :3, 3]), np.ascontiguousarray(poses[:, :3, :3])
 
@@ -67,10 +70,10 @@ def _ours(table: Table) -> list[Contender]:
         """Frames with the first branch that reaches them."""
         signs = [s for _, s in softkin._configuration.slots((0, 0, 0))]
         found = ((f, robot.branches(f)) for f in frames(poses))
-        return [(f, next((s for s, a in zip(signs, axes, strict=True) if a is not None), signs[0])) for f, axes in found]
+        return [(tuple(f), next((s for s, a in zip(signs, axes, strict=True) if a is not None), signs[0])) for f, axes in found]
 
     def named(poses: Array) -> list[Any]:
-        return [(f, (*(1 if s > 0 else 2 for s in signs), 0, 0, 0, 0, 0, 0)) for f, signs in chosen(poses)]
+        return [(softkin.Frame(*f), (*(1 if s > 0 else 2 for s in signs), 0, 0, 0, 0, 0, 0)) for f, signs in chosen(poses)]
 
     def configured(poses: Array) -> tuple[Array, Array, Array]:
         bytes_ = [[1 if s > 0 else 2 for s in signs] + [0] * 6 for _, signs in chosen(poses)]
@@ -85,7 +88,7 @@ def _ours(table: Table) -> list[Contender]:
         return _rows([[s.axes for s in slots if s.axes is not None] for slots in solutions])
 
     return [
-        Contender("softkin branches(frame)", ALL, frames, robot.branches, _slots),
+        Contender("softkin branches(frame)", ALL, plain, robot.branches, _slots),
         Contender("softkin inverse_all(frame), checked", ALL, frames, robot.inverse_all, looked_at),
         Contender("softkin tuple(inverse_all(frame))", ALL, frames, lambda f: tuple(robot.inverse_all(f)), looked_at),
         Contender("softkin branch(frame, signs)", ONE, chosen, robot.branch, _single),

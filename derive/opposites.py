@@ -1,19 +1,26 @@
-"""Opposites: where both coordinates of a direction have a minus in front, the angle of the opposite one is half a turn away.
+"""Opposites: what is bound with a minus, or read with one, is bound as its opposite where that leaves fewer minus signs.
 
     y = -a * u - b * v,  x = -a * w - b * t          minus_y = a * u + b * v,  minus_x = a * w + b * t
     axis = shift + atan2(y, x)/DEGREE           →    axis = (shift + 180) + atan2(minus_y, minus_x)/DEGREE
 
-Its turn is chosen afterwards.
+    s = -root(square),  arm = -length * s       →    minus_s = root(square),  arm = length * minus_s
+
+Where both coordinates of a direction have a minus in front, the angle of the opposite one is half a turn away; its turn is
+chosen afterwards.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import sympy as sp
 
+from derive.constant_parts import without_sign
 from derive.directions import direction_of
 from derive.names import Names
 from derive.passes import assemble, is_read_once
-from derive.program import DEGREE, Atan2, Let, Output, Program, rewritten
+from derive.program import DEGREE, Atan2, Let, Output, Program, Statement, expressions, rewritten
+from derive.turnless import turnless
 
 
 def without_minus(program: Program) -> Program:
@@ -34,3 +41,57 @@ def without_minus(program: Program) -> Program:
         for s in program.body
     ]
     return assemble(program.name, body, [Output(o.name, o.value.xreplace(changed)) for o in program.outputs])
+
+
+def with_fewer_signs(program: Program) -> Program:
+    """The program with opposites of sums, products and angles wherever that takes minus signs away."""
+    taken, turns_are_free = Names.of(program), turnless(program)
+    body, outputs = list(program.body), list(program.outputs)
+    place = 0
+    while place < len(body):
+        let = body[place]
+        place += 1
+        opposite = _opposite(let, turns_are_free) if isinstance(let, Let) else None
+        if not isinstance(let, Let) or opposite is None:
+            continue
+        reads_opposite = {let.name: -let.name}
+        read_in = [e for s in body for e in expressions(s)] + [o.value for o in outputs]
+        saved = sum(_signs_in(e) - _signs_in(e.xreplace(reads_opposite)) for e in read_in if let.name in e.free_symbols)
+        if saved + _signs_in(let.value) <= _signs_in(opposite):
+            continue
+        name = taken.fresh(_opposite_name(let.name.name))
+        turns_are_free |= {name} if let.name in turns_are_free else set()
+        body[place - 1] = Let(name, opposite, let.note)
+        body = [_with(s, {let.name: -name}) for s in body]
+        outputs = [Output(o.name, o.value.xreplace({let.name: -name})) for o in outputs]
+        place = 0
+    return assemble(program.name, body, outputs)
+
+
+def _with(statement: Statement, names: Mapping[sp.Basic, sp.Expr]) -> Statement:
+    return rewritten(statement, lambda e: e.xreplace(dict(names)))
+
+
+def _opposite(let: Let, turns_are_free: frozenset[sp.Symbol]) -> sp.Expr | None:
+    """The opposite of a sum, of a product, or of an angle whose turn nobody counts."""
+    if isinstance(let.value, sp.Add | sp.Mul):
+        return -let.value
+    if isinstance(let.value, Atan2) and let.name in turns_are_free:
+        sine, cosine = let.value.args
+        return Atan2(-sine, cosine)
+    return None
+
+
+def _opposite_name(name: str) -> str:
+    return name.removeprefix("minus_") if name.startswith("minus_") else f"minus_{name}"
+
+
+def _signs_in(value: sp.Basic) -> int:
+    """How many minus signs that subtract nothing a value is written with."""
+    if value.is_Add:
+        terms = [without_sign(term) for term in value.args]
+        is_all_negative = all(term != signed for term, signed in zip(terms, value.args, strict=True))
+        return int(is_all_negative) + sum(map(_signs_in, terms))
+    if value.is_Mul and value.args[0] == -1:
+        return 1 + _signs_in(-value)
+    return sum(map(_signs_in, value.args))

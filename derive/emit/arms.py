@@ -50,7 +50,7 @@ class Arms:
 Item = Statement | Arms
 
 
-def in_arms(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
+def in_arms(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
     """The statements of a program, choices that share a condition gathered with what they alone need."""
     return _sunk(_in_arms(body, wanted), {s for value in wanted for s in _symbols(value)})
 
@@ -112,7 +112,7 @@ def _reads_somewhere(item: Item) -> set[sp.Symbol]:
     return _reads_always(item)
 
 
-def _in_arms(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
+def _in_arms(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
     later = frozenset(s for value in wanted for s in _symbols(value))
     found: list[Item] = []
     stretch: list[Let] = []
@@ -121,7 +121,7 @@ def _in_arms(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Ite
             stretch.insert(0, statement)
             continue
         found[:0] = [statement, *_gathered(stretch, later)]
-        later = later.union(*(_symbols(let.value) for let in stretch), *map(_symbols, expressions(statement)))
+        later = later.union(*(_symbols(let.value) for let in stretch), _reads_somewhere(statement))
         stretch = []
     return (*_gathered(stretch, later), *found)
 

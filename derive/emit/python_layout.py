@@ -43,6 +43,11 @@ def tuple_of(parts: list[str]) -> str:
     return f"({', '.join(parts)}{',' if len(parts) == 1 else ''})"
 
 
+def repeated(part: str, count: int) -> str:
+    """A tuple of that many equal expressions."""
+    return f"{count}*({part},)" if count > 1 else f"({part},)"
+
+
 def taken_apart(targets: list[str], source: str) -> list[str]:
     """`a, b, c = source`, in as many lines as it takes."""
     line = f"{', '.join(targets)} = {source}" if len(targets) > 1 else f"({targets[0]},) = {source}"

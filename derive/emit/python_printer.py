@@ -9,6 +9,8 @@ from keyword import iskeyword
 import sympy as sp
 
 from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, PRODUCT, ExpressionPrinter
+from derive.emit.guards import PositiveRoot
+from derive.emit.read_once import Grouped
 from derive.program import DEGREE, Atan2, Root, Select
 
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
@@ -67,6 +69,10 @@ class ScalarPrinter(ExpressionPrinter):
         self.modulo_turns, self.is_trusted = modulo_turns, is_trusted
 
     def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, PositiveRoot):
+            return f"sqrt({self.print(node.args[0])})", ATOM
+        if isinstance(node, Grouped):
+            return self._spell(node.args[0])
         if self.is_trusted and node.is_Mul and 1 / DEGREE in node.args:
             return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
         if isinstance(node, sp.LessThan) and isinstance(node.lhs, sp.Abs) and node.lhs.args[0].is_Symbol and node.rhs.is_Number:

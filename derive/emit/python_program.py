@@ -48,6 +48,18 @@ class Argument:
     kind: str
     """Its type: `Axes`, `Vector`, `Rotation`, `Signs`, `Turns`."""
     shape: tuple[Shape, ...]
+    default: str = ""
+    """What stands for None; empty where there has to be a value."""
+
+    @property
+    def declared(self) -> str:
+        """As it stands in the head of a function."""
+        return f"{self.name}: {self.kind} | None = None" if self.default else f"{self.name}: {self.kind}"
+
+    @property
+    def source(self) -> str:
+        """Its value."""
+        return f"{self.default} if {self.name} is None else {self.name}" if self.default else self.name
 
 
 @dataclass(frozen=True)
@@ -106,24 +118,31 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
     lines: list[str] = []
     for item, same in grouped(items):
         if isinstance(item, Require):
-            lines += [*_note(item.note), *refusals.lines(same)]
+            lines += _refusing(same, refusals)
         elif isinstance(item, Iterate):
             lines += [*scalar_head(item, printer), *_step(item, printer)]
             lines += scalar_end(item, conjunction([item.done]), refusals.of_loop(item), printer)
         elif isinstance(item, Call):
             lines += python_calls.scalar_lines(item, printer)
         else:
-            lines += _item_lines(item, printer)
+            lines += _item_lines(item, refusals, printer)
     return lines
 
 
-def _item_lines(item: Item, printer: ScalarPrinter) -> list[str]:
-    """A binding, or a choice between two sides that bind the same."""
+def _refusing(requires: Sequence[Require], refusals: Refusals) -> list[str]:
+    return [*_note(requires[0].note), *refusals.lines(requires)]
+
+
+def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
+    """A binding, or a choice between two sides that bind the same or refuse."""
     if isinstance(item, Arms):
         notes = dict.fromkeys(i.note for i in item.holds if isinstance(i, Let) and i.name in item.names and i.note)
         head = [*(f"# {note}" for note in notes), *fold(f"if {conjunction([item.condition])}:")]
         sides = [[_unnoted(i, item.names) for i in side] for side in (item.holds, item.fails)]
-        return [*head, *_side(sides[0], printer), "else:", *_side(sides[1], printer)]
+        holds, fails = (_side(side, refusals, printer) for side in sides)
+        return [*head, *holds, "else:", *fails]
+    if isinstance(item, Require):
+        return _refusing([item], refusals)
     if isinstance(item, Let) and isinstance(item.value, NearestPeriod):
         return _turn_lines(item, item.value, printer)
     assert isinstance(item, Let | Solve)
@@ -135,8 +154,8 @@ def _unnoted(item: Item, names: Sequence[sp.Symbol]) -> Item:
     return replace(item, note="") if isinstance(item, Let) and item.name in names else item
 
 
-def _side(items: Sequence[Item], printer: ScalarPrinter) -> list[str]:
-    return [f"    {line}" for item in items for line in _item_lines(item, printer)]
+def _side(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
+    return [f"    {line}" for item in items for line in _item_lines(item, refusals, printer)]
 
 
 def _turn_lines(let: Let, value: NearestPeriod, printer: ScalarPrinter) -> list[str]:
@@ -265,7 +284,7 @@ def unpacked(method: Method) -> list[str]:
     lines: list[str] = []
     for argument in method.arguments:
         if read & set(names(argument.shape)):
-            lines += taken_apart([_targets(part, read) for part in argument.shape], argument.name)
+            lines += taken_apart([_targets(part, read) for part in argument.shape], argument.source)
     return lines
 
 

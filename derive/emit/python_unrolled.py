@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from derive.aimed import aimed
 from derive.angles_first import angles_first
 from derive.columns import shorter_columns
 from derive.common_parts import common_parts
 from derive.constant_parts import constant_parts
-from derive.emit.arms import in_arms, spared
-from derive.emit.python_layout import fold, tuple_of
+from derive.emit.arms import Item, in_arms, spared
+from derive.emit.guards import guarded
+from derive.emit.python_layout import fold, repeated, tuple_of
 from derive.emit.python_methods import POSITION, ROTATION, branch
 from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, primitives_in, spelled
 from derive.emit.python_program import (
@@ -23,12 +25,12 @@ from derive.emit.python_program import (
     constants_of,
     item_lines,
     let_lines,
-    statement_lines,
     unpacked,
 )
+from derive.emit.read_once import written_where_read
 from derive.emit.reused_names import reused_names
 from derive.kinematics import Kinematics
-from derive.opposites import without_minus
+from derive.opposites import with_fewer_signs, without_minus
 from derive.program import Let, Program, Status, real, symbols_of
 from derive.twins import with_twins
 from derive.unroll import (
@@ -47,7 +49,7 @@ from derive.unroll import (
 
 _ARRAY = ArrayPrinter()
 _SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, is_trusted=True)
-_FRAME = Argument("frame", "Frame", (POSITION, ROTATION))
+_FRAME = Argument("frame", "PlainFrame", (POSITION, ROTATION))
 
 
 @dataclass(frozen=True)
@@ -82,13 +84,13 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
 
 def every_branch(kin: Kinematics) -> Program:
     """All branches, periods nearest to the reference, limits tested."""
-    program = with_twins(unroll(_nearest(kin, with_limits(kin.branch, kin.limits)), signs(kin)))
+    program = with_twins(unroll(with_fewer_signs(_nearest(kin, with_limits(kin.branch, kin.limits))), signs(kin)))
     return common_parts(program, signs(kin), _constants(kin))
 
 
 def branches(kin: Kinematics) -> Program:
     """All branches, each axis in any turn."""
-    one = shorter_columns(_nearest(kin, kin.branch))
+    one = _trusted(kin)
     every = with_twins(unroll(one, signs(kin)))
     counted = [name for name in every.bound() if real(without_words(name.name, signs(kin))[0]) in counted_turns(one)]
     return common_parts(any_turn(every, counted), signs(kin), _constants(kin))
@@ -118,7 +120,12 @@ def array_lines(kin: Kinematics, method: Method) -> list[str]:
 def _nearest(kin: Kinematics, program: Program) -> Program:
     """No turn is commanded; on plain numbers a sine costs little."""
     given = specialised(program, {j.turn: sp.Integer(0) for j in kin.period_joints})
-    return without_minus(angles_first(given, _constants(kin)))
+    return without_minus(angles_first(aimed(given), _constants(kin)))
+
+
+def _trusted(kin: Kinematics) -> Program:
+    """One branch for input that is trusted, before its turns are let go."""
+    return with_fewer_signs(shorter_columns(_nearest(kin, kin.branch)))
 
 
 def _constants(kin: Kinematics) -> frozenset[str]:
@@ -128,8 +135,7 @@ def _constants(kin: Kinematics) -> frozenset[str]:
 def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers."""
     methods, parts = _with_constant_parts(kin, _methods(kin))
-    bodies = [_slots(kin, methods[0]), _directions(kin, methods[1]), _direction(methods[2])]
-    functions = tuple(_function(m, body) for m, body in zip(methods, bodies, strict=True))
+    functions = (_slots(kin, methods[0], parts), _directions(kin, methods[1], parts), _direction(methods[2], parts))
     read = {c for m in methods for c in constants_of(m)} | {s.name for p in parts for s in symbols_of(p.value)}
     constants = sorted(read - {p.name.name for p in parts})
     lines = [line for part in parts for line in let_lines(part, _SCALAR)]
@@ -145,7 +151,8 @@ def _with_constant_parts(kin: Kinematics, methods: Sequence[Method]) -> tuple[li
 
 def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
     position, rotation, sign_values, _, reference = branch(kin).arguments
-    one = shorter_columns(_nearest(kin, kin.branch))
+    optional = replace(reference, default=repeated("0.0", len(reference.shape)))
+    one = _trusted(kin)
     single = any_turn(with_twins(one), counted_turns(one))
     return (
         Method(
@@ -154,46 +161,67 @@ def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
         ),
         Method(
             "branches", "Every slot, the axes in some turn, of input that is trusted.", branches(kin),
-            (_FRAME, reference), "tuple[Reals | None, ...]", (),
+            (_FRAME, optional), "tuple[Reals | None, ...]", (),
         ),
         Method(
             "branch", "One branch, the axes in some turn, of input that is trusted.", single,
-            (_FRAME, sign_values, reference), "Reals | None", (),
+            (_FRAME, sign_values, optional), "Reals | None", (),
         ),
     )  # fmt: skip
 
 
-def _function(method: Method, body: list[str]) -> Function:
-    arguments = ", ".join(f"{a.name}: {a.kind}" for a in method.arguments)
-    return Function(fold(f"def {method.name}({arguments}) -> {method.kind}:", 4), method.summary, [*unpacked(method), *body])
-
-
-def _slots(kin: Kinematics, method: Method) -> list[str]:
-    """The body of the checked function."""
+def _slots(kin: Kinematics, method: Method, parts: Sequence[Let]) -> Function:
+    """The checked function."""
     count = 2 ** len(kin.branches)
-    refusals = Refusals(lambda status: f"{count}*({list(Status).index(status)}.0,)")
-    return _every(kin, method.program, refusals, _SCALAR, lambda refusal: refusal)
+    refusals = Refusals(lambda status: repeated(f"{list(Status).index(status)}.0", count))
+    written = _Written.of(method, parts)
+    return written.function(_every(kin, written, refusals, _SCALAR, lambda refusal: refusal))
 
 
-def _directions(kin: Kinematics, method: Method) -> list[str]:
-    count = 2 ** len(kin.branches)
-    return _every(kin, method.program, Refusals(lambda _: f"{count}*(None,)"), _DIRECTIONS, lambda _: "None")
+def _directions(kin: Kinematics, method: Method, parts: Sequence[Let]) -> Function:
+    refusals = Refusals(lambda _: repeated("None", 2 ** len(kin.branches)))
+    written = _Written.of(method, parts)
+    return written.function(_every(kin, written, refusals, _DIRECTIONS, lambda _: "None"))
+
+
+def _direction(method: Method, parts: Sequence[Let]) -> Function:
+    written = _Written.of(method, parts)
+    lines = item_lines(written.items, Refusals(lambda _: "None"), _DIRECTIONS)
+    values = tuple_of([_DIRECTIONS.print(value) for value in written.values.values()])
+    return written.function([*lines, *fold(f"return {values}")])
+
+
+@dataclass(frozen=True)
+class _Written:
+    """A method as it is written down: with a name for what is read more than once."""
+
+    method: Method
+    items: tuple[Item, ...]
+    values: Mapping[str, sp.Expr]
+    """The outputs."""
+
+    @classmethod
+    def of(cls, method: Method, parts: Sequence[Let]) -> _Written:
+        """parts: what the constants are that it reads."""
+        wanted = [o.value for o in method.program.outputs]
+        items = spared(in_arms(guarded(method.program.body, parts), wanted), wanted)
+        items, values = written_where_read(items, wanted)
+        return cls(method, items, {o.name: o.value.xreplace(dict(values)) for o in method.program.outputs})
+
+    def function(self, body: list[str]) -> Function:
+        """The function with this body."""
+        method = self.method
+        head = fold(f"def {method.name}({', '.join(a.declared for a in method.arguments)}) -> {method.kind}:", 4)
+        return Function(head, method.summary, [*unpacked(method), *body])
 
 
 def _every(
-    kin: Kinematics, program: Program, refusals: Refusals, printer: ScalarPrinter, refused: Callable[[str], str]
+    kin: Kinematics, written: _Written, refusals: Refusals, printer: ScalarPrinter, refused: Callable[[str], str]
 ) -> list[str]:
     """Statements one branch after the other, and all slots."""
-    wanted = [o.value for o in program.outputs]
-    items, names = reused_names(spared(in_arms(program.body, wanted), wanted), wanted, signs(kin))
-    values = {o.name: o.value.xreplace(dict(names)) for o in program.outputs}
+    items, shorter = reused_names(written.items, list(written.values.values()), signs(kin))
+    values = {name: value.xreplace(dict(shorter)) for name, value in written.values.items()}
     return [*item_lines(items, refusals, printer), *_returned(kin, values, refused)]
-
-
-def _direction(method: Method) -> list[str]:
-    lines = statement_lines(method.program, Refusals(lambda _: "None"), _DIRECTIONS)
-    values = [_DIRECTIONS.print(o.value) for o in method.program.outputs]
-    return [*lines, *fold(f"return {tuple_of(values)}")]
 
 
 def _returned(kin: Kinematics, values: Mapping[str, sp.Expr], refused: Callable[[str], str]) -> list[str]:

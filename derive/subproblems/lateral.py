@@ -1,6 +1,7 @@
 """Lateral: a cos u + b sin u = e, where (a, b) is a commanded point that u aims at and e how far beside the arm it is.
 
-Two roots: h = |(a, b)|, C = e / h, S = sigma sqrt((h - e)(h + e)) / h as in `trigonometric`. Slope h S: sigma is its sign.
+Two roots: with h = |(a, b)| and how far the point is ahead, s = sigma sqrt((h - e)(h + e)), cos u = (a e - b s) / h^2 and
+sin u = (b e + a s) / h^2. The radicand stays a product. Slope a sin u - b cos u = s: sigma is its sign.
 Guard: |e| <= h, else the point is nearer to the axis than the arm is beside it. Degenerate case: the point on the axis, where
 no h is left: nothing can be reached unless e vanishes too, and then u is free. So h is the measure where e is zero.
 """
@@ -58,20 +59,19 @@ def _beside(
     note: str,
 ) -> Binding:
     along, across, beside, distance = row
-    square, divisor = real(f"sine_square_{angle.name}"), real(f"divisor_{angle.name}")
-    cos_name, sin_name = real(f"cos_swing_{angle.name}"), real(f"sin_swing_{angle.name}")
+    ahead, square = real(f"ahead_{angle.name}"), real(f"ahead_squared_{angle.name}")
+    divisor = real(f"divisor_{angle.name}")
     shortest = FREE_ANGLE * problem.scale
     determined = sp.Gt(distance, shortest)
     cos_free, sin_free = free_angle(problem, angle)
-    cos_value = (along * cos_name - across * sin_name) / divisor
-    sin_value = (across * cos_name + along * sin_name) / divisor
+    cos_value = (along * beside - across * ahead) / divisor
+    sin_value = (across * beside + along * ahead) / divisor
     statements: tuple[Statement, ...] = (
         *naming.lets,
-        Let(divisor, Select(determined, distance, shortest), note),
-        Let(square, (distance - beside) * (distance + beside) / divisor**2, "kept as a product"),
-        Require(sp.Ge(square, -BOUNDARY), Status.UNREACHABLE, f"{angle.name}: out of reach"),
-        Let(cos_name, beside / divisor),
-        Let(sin_name, slope.sigma * Root(square)),
+        Let(square, (distance - beside) * (distance + beside), note),
+        Require(sp.Ge(square, -BOUNDARY * (distance**2 + shortest**2)), Status.UNREACHABLE, f"{angle.name}: out of reach"),
+        Let(ahead, slope.sigma * Root(square), "how far ahead of the axis the point is"),
+        Let(divisor, Select(determined, distance**2, sp.Integer(1))),
         Let(cosine(angle), Select(determined, cos_value, cos_free), "its reference where it is free"),
         Let(sine(angle), Select(determined, sin_value, sin_free)),
     )

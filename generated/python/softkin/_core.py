@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import nan
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, NoReturn, Protocol, TypeAlias
 
 from softkin._configuration import (
     AUTOMATIC,
@@ -34,6 +34,7 @@ from softkin._types import (
     Numbers,
     OrientationImage,
     Parameter,
+    PlainFrame,
     Reals,
     Rotation,
     Singularity,
@@ -63,13 +64,30 @@ _OneBranch: TypeAlias = Callable[[Reals], Reals | Status]
 """The axes by the signs of the branches."""
 
 
-class Unrolled(NamedTuple):
-    """The functions of a machine whose inverse is one straight line for all branches."""
-
-    every_branch: Callable[[Vector, Rotation, Reals], tuple[Reals | float, ...]]
+class EveryBranch(Protocol):
     """Every slot: its axes, or the number of its status."""
-    branches: Callable[[Frame, Reals], tuple[Reals | None, ...]]
-    branch: Callable[[Frame, Reals, Reals], Reals | None]
+
+    def __call__(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]: ...
+
+
+class Branches(Protocol):
+    """`Mechanism.branches` of one machine."""
+
+    def __call__(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]: ...
+
+
+class Branch(Protocol):
+    """`Mechanism.branch` of one machine."""
+
+    def __call__(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None: ...
+
+
+class Unrolled(NamedTuple):
+    """The functions of a machine whose inverse is one straight line for all branches: nothing is looked up in a call."""
+
+    every_branch: EveryBranch
+    branches: Branches
+    branch: Branch
 
 
 class Mechanism(ABC):
@@ -186,7 +204,7 @@ class Mechanism(ABC):
         found = self._every_branch(position, rows, self._near(reference))
         return Solutions(found, slots((AUTOMATIC,) * self.BRANCHES), self._solution)
 
-    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+    def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None where it does not reach.
 
         The input is trusted: plain tuples of floats, with a rotation that is one. An axis that no other moves with
@@ -194,7 +212,7 @@ class Mechanism(ABC):
         """
         return tuple([self.branch(frame, signs, reference) for _, signs in slots((AUTOMATIC,) * self.BRANCHES)])
 
-    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops, with input and axes as `branches` has them.
 
         signs: 1.0 for byte 1 of a branch, -1.0 for byte 2.

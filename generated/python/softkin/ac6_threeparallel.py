@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 171 additions, 164 multiplications, 37 divisions, 9 square roots, 18 sines
-    inverse, all 8 branches open: 1361 additions, 1312 multiplications, 296 divisions, 72 square roots, 144 sines
+    inverse: 172 additions, 167 multiplications, 35 divisions, 9 square roots, 18 sines
+    inverse, all 8 branches open: 1369 additions, 1336 multiplications, 280 divisions, 72 square roots, 144 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -43,9 +43,9 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, Mechanism, Pose
+from softkin._core import Branch, Branches, EveryBranch, Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.ac6_threeparallel import unrolled
 
 if TYPE_CHECKING:
@@ -53,8 +53,6 @@ if TYPE_CHECKING:
 
     from softkin._array import Programs
 
-
-_ZERO_AXES = 6*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -126,7 +124,13 @@ class Ac6ThreeParallel(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_constants", "_every_branch", "branch", "branches")
+
+    branch: Branch
+    """One branch for inner loops: see `Mechanism.branch`."""
+    branches: Branches
+    """Every branch for inner loops: see `Mechanism.branches`."""
+    _every_branch: EveryBranch
 
     NAME = "Kin_Ac6_ThreeParallel"
     AXES = (
@@ -308,7 +312,7 @@ class Ac6ThreeParallel(Mechanism):
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, lowest_a5=-1e12, lowest_a6=-1e12,
                 highest_a1=1e12, highest_a2=1e12, highest_a3=1e12, highest_a4=1e12, highest_a5=1e12, highest_a6=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._every_branch, self.branches, self.branch = unrolled(tested)
 
     def _setup(
         self, d1: float, a2: float, a3: float, d4: float, d5: float, d6: float, offset_a1: float,
@@ -646,18 +650,17 @@ class Ac6ThreeParallel(Mechanism):
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
-        sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
+        if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
             return Status.UNREACHABLE
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1 = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_shoulder
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1
-            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+            # how far ahead of the axis the point is
+            ahead_q1 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_shoulder
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1 = (ahead_q1*wrist_x - d4*wrist_y)/divisor_q1
+            sin_q1 = (ahead_q1*wrist_y + d4*wrist_x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1 = cos(free_a1)
@@ -1017,17 +1020,6 @@ class Ac6ThreeParallel(Mechanism):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
-
-    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
-
-    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
-        """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -36,9 +36,9 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, Mechanism, Pose
+from softkin._core import Branch, Branches, EveryBranch, Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.ac6_txtytzryrxrz import unrolled
 
 if TYPE_CHECKING:
@@ -46,8 +46,6 @@ if TYPE_CHECKING:
 
     from softkin._array import Programs
 
-
-_ZERO_AXES = 6*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -108,7 +106,13 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_constants", "_every_branch", "branch", "branches")
+
+    branch: Branch
+    """One branch for inner loops: see `Mechanism.branch`."""
+    branches: Branches
+    """Every branch for inner loops: see `Mechanism.branches`."""
+    _every_branch: EveryBranch
 
     NAME = "Kin_Ac6_TXTYTZRYRXRZ"
     AXES = (
@@ -270,7 +274,7 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, lowest_a5=-1e12, lowest_a6=-1e12,
                 highest_a1=1e12, highest_a2=1e12, highest_a3=1e12, highest_a4=1e12, highest_a5=1e12, highest_a6=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._every_branch, self.branches, self.branch = unrolled(tested)
 
     def _setup(
         self, flange_x: float, flange_y: float, flange_z: float, offset_a1: float, offset_a2: float,
@@ -666,17 +670,6 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
-
-    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
-
-    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
-        """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

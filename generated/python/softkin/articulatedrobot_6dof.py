@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 66 additions, 68 multiplications, 8 divisions, 0 square roots, 14 sines
-    inverse: 134 additions, 132 multiplications, 30 divisions, 6 square roots, 12 sines
-    inverse, all 8 branches open: 1065 additions, 1056 multiplications, 240 divisions, 48 square roots, 96 sines
+    inverse: 135 additions, 135 multiplications, 28 divisions, 6 square roots, 12 sines
+    inverse, all 8 branches open: 1073 additions, 1080 multiplications, 224 divisions, 48 square roots, 96 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -43,9 +43,9 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, Mechanism, Pose
+from softkin._core import Branch, Branches, EveryBranch, Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.articulatedrobot_6dof import unrolled
 
 if TYPE_CHECKING:
@@ -53,8 +53,6 @@ if TYPE_CHECKING:
 
     from softkin._array import Programs
 
-
-_ZERO_AXES = 6*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -127,7 +125,13 @@ class ArticulatedRobot6DOF(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_constants", "_every_branch", "branch", "branches")
+
+    branch: Branch
+    """One branch for inner loops: see `Mechanism.branch`."""
+    branches: Branches
+    """Every branch for inner loops: see `Mechanism.branches`."""
+    _every_branch: EveryBranch
 
     NAME = "Kin_ArticulatedRobot_6DOF"
     AXES = (
@@ -314,7 +318,7 @@ class ArticulatedRobot6DOF(Mechanism):
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, lowest_a5=-1e12, lowest_a6=-1e12,
                 highest_a1=1e12, highest_a2=1e12, highest_a3=1e12, highest_a4=1e12, highest_a5=1e12, highest_a6=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._every_branch, self.branches, self.branch = unrolled(tested)
 
     def _setup(
         self, d1: float, a1: float, a2: float, d3: float, a3: float, d4: float, d6: float, offset_a1: float,
@@ -672,18 +676,17 @@ class ArticulatedRobot6DOF(Mechanism):
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
-        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
+        if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
             return Status.UNREACHABLE
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1
-            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+            # how far ahead of the axis the point is
+            ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/divisor_q1
+            sin_q1 = (ahead_q1*wrist_y + d3*wrist_x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1 = cos(free_a1)
@@ -979,17 +982,6 @@ class ArticulatedRobot6DOF(Mechanism):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
-
-    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
-
-    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
-        """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

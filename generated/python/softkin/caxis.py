@@ -27,11 +27,11 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, Pose
+from softkin._core import Branch, Branches, EveryBranch, Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.caxis import unrolled
 
 if TYPE_CHECKING:
@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 
     from softkin._array import OrientationPrograms
 
-
-_ZERO_AXES = (0.0,)
 
 
 class Constants(NamedTuple):
@@ -64,7 +62,13 @@ class CAxis(OrientationKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_constants", "_every_branch", "branch", "branches")
+
+    branch: Branch
+    """One branch for inner loops: see `Mechanism.branch`."""
+    branches: Branches
+    """Every branch for inner loops: see `Mechanism.branches`."""
+    _every_branch: EveryBranch
 
     NAME = "Kin_CAxis"
     AXES = (
@@ -116,7 +120,7 @@ class CAxis(OrientationKinematics, TwistChoice):
         tested = self._constants
         if not self.checks_limits:
             tested = tested._replace(lowest_c=-1e12, highest_c=1e12)
-        self._unrolled = unrolled(tested)
+        self._every_branch, self.branches, self.branch = unrolled(tested)
 
     def _setup(self, offset_c: float, lower_c: float, upper_c: float, check_limits: float) -> Constants:
         """The constants of the machine."""
@@ -317,17 +321,6 @@ class CAxis(OrientationKinematics, TwistChoice):
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
-
-    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
-
-    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
-        """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -48,10 +48,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, Pose
+from softkin._core import Branch, Branches, EveryBranch, Image, Pose
 from softkin._scalar import DEGREE, cos, root, sin, solve, sqrt
 from softkin._start import IterativeForward
-from softkin._types import Axis, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.hexapod import unrolled
 
 if TYPE_CHECKING:
@@ -59,8 +59,6 @@ if TYPE_CHECKING:
 
     from softkin._array import StartedPrograms
 
-
-_ZERO_AXES = 6*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -207,7 +205,13 @@ class Hexapod(IterativeForward):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_constants", "_every_branch", "branch", "branches")
+
+    branch: Branch
+    """One branch for inner loops: see `Mechanism.branch`."""
+    branches: Branches
+    """Every branch for inner loops: see `Mechanism.branches`."""
+    _every_branch: EveryBranch
 
     NAME = "Kin_Hexapod"
     AXES = (
@@ -629,7 +633,7 @@ class Hexapod(IterativeForward):
                 lowest_l1=-1e12, lowest_l2=-1e12, lowest_l3=-1e12, lowest_l4=-1e12, lowest_l5=-1e12, lowest_l6=-1e12,
                 highest_l1=1e12, highest_l2=1e12, highest_l3=1e12, highest_l4=1e12, highest_l5=1e12, highest_l6=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._every_branch, self.branches, self.branch = unrolled(tested)
 
     def _setup(
         self, base_1_x: float, base_1_y: float, base_1_z: float, base_2_x: float, base_2_y: float,
@@ -1957,17 +1961,6 @@ class Hexapod(IterativeForward):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
-
-    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
-
-    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
-        """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

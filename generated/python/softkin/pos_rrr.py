@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 30 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
-    inverse: 60 additions, 51 multiplications, 19 divisions, 4 square roots, 7 sines
-    inverse, all 4 branches open: 237 additions, 204 multiplications, 76 divisions, 16 square roots, 28 sines
+    inverse: 61 additions, 54 multiplications, 17 divisions, 4 square roots, 7 sines
+    inverse, all 4 branches open: 241 additions, 216 multiplications, 68 divisions, 16 square roots, 28 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -35,10 +35,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, Pose
+from softkin._core import Branch, Branches, EveryBranch, Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.pos_rrr import unrolled
 
 if TYPE_CHECKING:
@@ -46,8 +46,6 @@ if TYPE_CHECKING:
 
     from softkin._array import Programs
 
-
-_ZERO_AXES = 3*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -95,7 +93,13 @@ class PosRRR(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_constants", "_every_branch", "branch", "branches")
+
+    branch: Branch
+    """One branch for inner loops: see `Mechanism.branch`."""
+    branches: Branches
+    """Every branch for inner loops: see `Mechanism.branches`."""
+    _every_branch: EveryBranch
 
     NAME = "Kin_Pos_RRR"
     AXES = (
@@ -221,7 +225,7 @@ class PosRRR(OffsetKinematics):
             tested = tested._replace(
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._every_branch, self.branches, self.branch = unrolled(tested)
 
     def _setup(
         self, d1: float, a1: float, a2: float, d3: float, a3: float, d4: float, offset_a1: float,
@@ -420,18 +424,17 @@ class PosRRR(OffsetKinematics):
         ):
             return Status.BAD_INPUT
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
-        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
+        if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
             return Status.UNREACHABLE
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1
-            sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
+            # how far ahead of the axis the point is
+            ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1 = (ahead_q1*x - d3*y)/divisor_q1
+            sin_q1 = (ahead_q1*y + d3*x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1 = cos(free_a1)
@@ -672,13 +675,11 @@ class PosRRR(OffsetKinematics):
             and -1e9 <= ref_a3 <= 1e9
         ):
             return Status.BAD_INPUT
-        tool_z = d3 + point_y  # the point seen from the last moving joint
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
-        sine_square_q1 = (distance_q1 + tool_z)*(distance_q1 - tool_z)/(divisor_q1*divisor_q1)  # kept as a product
+        tool_z = d3 + point_y  # the point seen from the last moving joint
+        ahead_squared_q1 = (distance_q1 + tool_z)*(distance_q1 - tool_z)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
+        if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
             return Status.UNREACHABLE
         tool_x = a3 + point_x  # the point seen from the last moving joint
         tool_y = -d4 - point_z  # the point seen from the last moving joint
@@ -688,10 +689,11 @@ class PosRRR(OffsetKinematics):
             return Status.UNREACHABLE
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            cos_swing_q1 = -tool_z/divisor_q1
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1
-            sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
+            # how far ahead of the axis the point is
+            ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1 = (ahead_q1*x - tool_z*y)/divisor_q1
+            sin_q1 = (ahead_q1*y + tool_z*x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1 = cos(free_a1)
@@ -792,17 +794,6 @@ class PosRRR(OffsetKinematics):
         tool_y = -d4 - point_z  # the point seen from the last moving joint
         branch_elbow = (-tool_y*cos_q3 - tool_x*sin_q3)/machine_scale
         return (branch_arm, branch_elbow)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
-
-    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
-
-    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
-        """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

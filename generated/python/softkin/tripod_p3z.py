@@ -36,10 +36,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, Pose
+from softkin._core import Branch, Branches, EveryBranch, Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import root, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.tripod_p3z import unrolled
 
 if TYPE_CHECKING:
@@ -47,8 +47,6 @@ if TYPE_CHECKING:
 
     from softkin._array import Programs
 
-
-_ZERO_AXES = 3*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -104,7 +102,13 @@ class TripodP3Z(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_constants", "_every_branch", "branch", "branches")
+
+    branch: Branch
+    """One branch for inner loops: see `Mechanism.branch`."""
+    branches: Branches
+    """Every branch for inner loops: see `Mechanism.branches`."""
+    _every_branch: EveryBranch
 
     NAME = "Kin_Tripod_P3Z"
     AXES = (
@@ -253,7 +257,7 @@ class TripodP3Z(OffsetKinematics):
             tested = tested._replace(
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._every_branch, self.branches, self.branch = unrolled(tested)
 
     def _setup(
         self, arm_length: float, tcp_displacement: float, rail_x_1: float, rail_y_1: float, rail_x_2: float,
@@ -995,17 +999,6 @@ class TripodP3Z(OffsetKinematics):
         branch_carriage_2 = (a2 - flange_z)/arm_length
         branch_carriage_3 = (a3 - flange_z)/arm_length
         return (branch_carriage_1, branch_carriage_2, branch_carriage_3)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
-
-    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
-
-    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
-        """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

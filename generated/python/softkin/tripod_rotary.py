@@ -39,10 +39,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, Pose
+from softkin._core import Branch, Branches, EveryBranch, Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.tripod_rotary import unrolled
 
 if TYPE_CHECKING:
@@ -50,8 +50,6 @@ if TYPE_CHECKING:
 
     from softkin._array import Programs
 
-
-_ZERO_AXES = 3*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -101,7 +99,13 @@ class TripodRotary(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_constants", "_every_branch", "branch", "branches")
+
+    branch: Branch
+    """One branch for inner loops: see `Mechanism.branch`."""
+    branches: Branches
+    """Every branch for inner loops: see `Mechanism.branches`."""
+    _every_branch: EveryBranch
 
     NAME = "Kin_Tripod_Rotary"
     AXES = (
@@ -252,7 +256,7 @@ class TripodRotary(OffsetKinematics):
             tested = tested._replace(
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._every_branch, self.branches, self.branch = unrolled(tested)
 
     def _setup(
         self, arm_length_1: float, arm_length_2: float, arm_1_radius: float, stewart_radius: float,
@@ -1701,17 +1705,6 @@ class TripodRotary(OffsetKinematics):
         )
         branch_knee_3 = 0.5*(-2.0*span_1_z*cos_a3 - span_2_x*sin_a3 - root(3.0)*span_3_y*sin_a3)/arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
-
-    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
-
-    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
-        """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -33,10 +33,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, Pose
+from softkin._core import Branch, Branches, EveryBranch, Image, Pose
 from softkin._orientation import OrientationKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Frame, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 from softkin._unrolled.wrist3 import unrolled
 
 if TYPE_CHECKING:
@@ -44,8 +44,6 @@ if TYPE_CHECKING:
 
     from softkin._array import OrientationPrograms
 
-
-_ZERO_AXES = 3*(0.0,)
 
 
 class Constants(NamedTuple):
@@ -88,7 +86,13 @@ class Wrist3(OrientationKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_constants", "_every_branch", "branch", "branches")
+
+    branch: Branch
+    """One branch for inner loops: see `Mechanism.branch`."""
+    branches: Branches
+    """Every branch for inner loops: see `Mechanism.branches`."""
+    _every_branch: EveryBranch
 
     NAME = "Kin_Wrist3"
     AXES = (
@@ -198,7 +202,7 @@ class Wrist3(OrientationKinematics):
             tested = tested._replace(
                 lowest_a=-1e12, lowest_b=-1e12, lowest_c=-1e12, highest_a=1e12, highest_b=1e12, highest_c=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._every_branch, self.branches, self.branch = unrolled(tested)
 
     def _setup(
         self, tool_offset_x: float, tool_offset_y: float, tool_offset_z: float, offset_a: float, offset_b: float,
@@ -543,17 +547,6 @@ class Wrist3(OrientationKinematics):
             r21*tool_offset_x + r22*tool_offset_y + r23*tool_offset_z,
             r31*tool_offset_x + r32*tool_offset_y + r33*tool_offset_z,
         )
-
-    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
-
-    def branches(self, frame: Frame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
-        """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.branches(frame, _ZERO_AXES if reference is None else reference)
-
-    def branch(self, frame: Frame, signs: Reals, reference: Reals | None = None) -> Reals | None:
-        """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.branch(frame, signs, _ZERO_AXES if reference is None else reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -215,11 +215,12 @@ class ArrayPrograms(Programs):
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
-        sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
+        require(
+            status, ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale,
+            Status.UNREACHABLE,
+        )
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -227,10 +228,10 @@ class ArrayPrograms(Programs):
             sin_q1 = sin(free_a1)
             return (cos_q1, sin_q1)
 
-        cos_swing_q1 = -d4/divisor_q1
-        sin_swing_q1 = -root(sine_square_q1)*sigma_shoulder
-        cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1  # its reference where it is free
-        sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+        ahead_q1 = -root(ahead_squared_q1)*sigma_shoulder  # how far ahead of the axis the point is
+        divisor_q1 = distance_q1*distance_q1
+        cos_q1 = (ahead_q1*wrist_x - d4*wrist_y)/divisor_q1  # its reference where it is free
+        sin_q1 = (ahead_q1*wrist_y + d4*wrist_x)/divisor_q1
         cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
         cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
@@ -571,11 +572,12 @@ class ArrayPrograms(Programs):
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
-        sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
+        require(
+            status, ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale,
+            Status.UNREACHABLE,
+        )
 
         def elsewhere_cos_q1_left(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -585,13 +587,12 @@ class ArrayPrograms(Programs):
             sin_q1_right = sin_q1_left
             return (cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right)
 
-        cos_swing_q1 = -d4/divisor_q1
-        sin_swing_q1_right = root(sine_square_q1)
-        cos_q1_left = (wrist_y*cos_swing_q1 - wrist_x*sin_swing_q1_right)/divisor_q1  # its reference where it is free
-        sin_q1_left = (-wrist_x*cos_swing_q1 - wrist_y*sin_swing_q1_right)/divisor_q1
-        # its reference where it is free
-        cos_q1_right = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1_right)/divisor_q1
-        sin_q1_right = (wrist_y*sin_swing_q1_right - wrist_x*cos_swing_q1)/divisor_q1
+        ahead_q1_right = root(ahead_squared_q1)  # how far ahead of the axis the point is
+        divisor_q1 = distance_q1*distance_q1
+        cos_q1_left = (-ahead_q1_right*wrist_x - d4*wrist_y)/divisor_q1  # its reference where it is free
+        sin_q1_left = (d4*wrist_x - ahead_q1_right*wrist_y)/divisor_q1
+        cos_q1_right = (ahead_q1_right*wrist_x - d4*wrist_y)/divisor_q1  # its reference where it is free
+        sin_q1_right = (ahead_q1_right*wrist_y + d4*wrist_x)/divisor_q1
         cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right = elsewhere(
             distance_q1 > 1e-11*machine_scale,
             (cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right),

@@ -137,11 +137,12 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
-        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
+        require(
+            status, ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale,
+            Status.UNREACHABLE,
+        )
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -149,10 +150,10 @@ class ArrayPrograms(Programs):
             sin_q1 = sin(free_a1)
             return (cos_q1, sin_q1)
 
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1 = root(sine_square_q1)*sigma_arm
-        cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1  # its reference where it is free
-        sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
+        ahead_q1 = root(ahead_squared_q1)*sigma_arm  # how far ahead of the axis the point is
+        divisor_q1 = distance_q1*distance_q1
+        cos_q1 = (ahead_q1*x - d3*y)/divisor_q1  # its reference where it is free
+        sin_q1 = (ahead_q1*y + d3*x)/divisor_q1
         cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
@@ -264,11 +265,12 @@ class ArrayPrograms(Programs):
             Status.BAD_INPUT,
         )
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = select(distance_q1 > 1e-11*machine_scale, distance_q1, 1e-11*machine_scale)
-        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        require(status, sine_square_q1 >= -1e-12, Status.UNREACHABLE)
+        require(
+            status, ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale,
+            Status.UNREACHABLE,
+        )
 
         def elsewhere_cos_q1_front(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -278,12 +280,12 @@ class ArrayPrograms(Programs):
             sin_q1_back = sin_q1_front
             return (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back)
 
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1_front = root(sine_square_q1)
-        cos_q1_front = (y*cos_swing_q1 + x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-        sin_q1_front = (y*sin_swing_q1_front - x*cos_swing_q1)/divisor_q1
-        cos_q1_back = (y*cos_swing_q1 - x*sin_swing_q1_front)/divisor_q1  # its reference where it is free
-        sin_q1_back = (-x*cos_swing_q1 - y*sin_swing_q1_front)/divisor_q1
+        ahead_q1_front = root(ahead_squared_q1)  # how far ahead of the axis the point is
+        divisor_q1 = distance_q1*distance_q1
+        cos_q1_front = (ahead_q1_front*x - d3*y)/divisor_q1  # its reference where it is free
+        sin_q1_front = (ahead_q1_front*y + d3*x)/divisor_q1
+        cos_q1_back = (-ahead_q1_front*x - d3*y)/divisor_q1  # its reference where it is free
+        sin_q1_back = (d3*x - ahead_q1_front*y)/divisor_q1
         cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back = elsewhere(
             distance_q1 > 1e-11*machine_scale,
             (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back),

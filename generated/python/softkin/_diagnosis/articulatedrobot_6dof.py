@@ -69,16 +69,15 @@ def branch(
     wrist_x = x - d6*r13
     wrist_y = y - d6*r23
     distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-    divisor_q1 = distance_q1 if distance_q1 > 1e-11*machine_scale else 1e-11*machine_scale
-    sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)
-    if not (sine_square_q1 >= -1e-12):
+    ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
+    if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
         missing = 0.5*abs(d3 - distance_q1) + 0.5*abs(d3 + distance_q1) - distance_q1
         return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
     if distance_q1 > 1e-11*machine_scale:
-        cos_swing_q1 = -d3/divisor_q1
-        sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-        cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1
-        sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+        ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
+        divisor_q1 = distance_q1*distance_q1
+        cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/divisor_q1
+        sin_q1 = (ahead_q1*wrist_y + d3*wrist_x)/divisor_q1
     else:
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         cos_q1 = cos(free_a1)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.ac6_threeparallel import Constants
 
 
@@ -54,10 +54,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     size_q6_of_q3 = k.size_q6_of_q3
+    constant_part = 1e-34*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_squared_plus_a3_squared = a2*a2 + a3*a3
     size_q6_of_q3_times_rounding = 1e-12*size_q6_of_q3
-    constant_part = 1.000000001*size_q6_of_q3
+    constant_part_2 = 1.000000001*size_q6_of_q3
     a2_plus_a3 = a2 + a3
     a2_minus_a3 = a2 - a3
     scale_q3_squared = scale_q3*scale_q3
@@ -90,39 +91,45 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
-        sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
-            return 8*(3.0,)
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # how far ahead of the axis the point is
+        if ahead_squared_q1 > 0.0:
+            ahead_q1 = sqrt(ahead_squared_q1)
+        else:
+            # q1: out of reach
+            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+                return 8*(3.0,)
+            ahead_q1 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
-            sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
-            cos_swing_q1 = -d4/divisor_q1
-            cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
-            cos_q1_left = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
-            sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
-            cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
-            sin_q1_left = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
-            cos_q1_right = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
-            sin_q1_right = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
+            d4_times_wrist_y = d4*wrist_y
+            ahead_q1_times_wrist_x = ahead_q1*wrist_x
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_left = (-ahead_q1_times_wrist_x - d4_times_wrist_y)/divisor_q1
+            ahead_q1_times_wrist_y = ahead_q1*wrist_y
+            d4_times_wrist_x = d4*wrist_x
+            sin_q1_left = (d4_times_wrist_x - ahead_q1_times_wrist_y)/divisor_q1
+            point_from_q1_left = -ahead_q1
+            cos_q1_right = (ahead_q1_times_wrist_x - d4_times_wrist_y)/divisor_q1
+            sin_q1_right = (ahead_q1_times_wrist_y + d4_times_wrist_x)/divisor_q1
+            point_from_q1_right = -point_from_q1_left
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_left = cos(free_a1)
             sin_q1_left = sin(free_a1)
+            point_from_q1_left = wrist_x*cos_q1_left + wrist_y*sin_q1_left
             cos_q1_right = cos_q1_left
             sin_q1_right = sin_q1_left
-        cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_left + wrist_y*sin_q1_left
-        r21_from_q1 = r21*cos_q1_left - r11*sin_q1_left
+            point_from_q1_right = wrist_x*cos_q1_right + wrist_y*sin_q1_right
+        minus_r21_from_q1 = r11*sin_q1_left - r21*cos_q1_left
         r22_from_q1 = r22*cos_q1_left - r12*sin_q1_left
-        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        # q6: direction and distance of a point
+        radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
         cos_q5 = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
         # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
@@ -132,16 +139,12 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin(free_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
-        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down
         r21_from_q1_before_q56_before_q6_of_q3_down = (
-            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - r33_times_radius_q6
+            (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
-        wrist_x_from_q1_before_q6_of_q3 = (
-            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
-        )
+        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
-        wrist_z = z - d6*r33
-        wrist_y_from_q1_fixed = wrist_z - d1
+        wrist_y_from_q1_fixed = z - d6*r33 - d1
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -161,19 +164,19 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_along = -d5*r31*cos_q5
+            minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 + point_from_q1_left
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
                 across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
@@ -182,25 +185,25 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
+                    minus_level_q6_of_q3 = (
+                        across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -208,15 +211,14 @@ def unrolled(k: Constants) -> Unrolled:
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
-                centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
-                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_down + 0.0, cos_q6_before_q6_of_q3_down + 0.0)
                 side_q6_of_q3 = (
                     1.0
                     if along_q6_of_q3*sin_q6_before_q6_of_q3_down - across_q6_of_q3*cos_q6_before_q6_of_q3_down >= 0.0
                     else -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    arctan2(sin_q6_before_q6_of_q3_down + 0.0, cos_q6_before_q6_of_q3_down + 0.0),
+                    (arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0) + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3),
                     0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
@@ -240,9 +242,8 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-            r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
-            wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+            r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - r33_times_radius_q6
+            wrist_x_from_q1 = point_from_q1_left - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -253,9 +254,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         sin_q3 = (sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
@@ -294,12 +293,11 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
             r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
         else:
-            r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up
-            r21_from_q1_before_q56_before_q6_of_q3_up = r33_times_radius_q6 + r21_from_q1_before_q6_before_q6_of_q3*cos_q5
+            r21_from_q1_before_q56_before_q6_of_q3_up = (
+                r33_times_radius_q6 + (r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up)*cos_q5
+            )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
-        wrist_x_from_q1_before_q6_of_q3 = (
-            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
-        )
+        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -314,19 +312,19 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_along = -d5*r31*cos_q5
+            minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = point_from_q1_left - d5_times_r33_times_radius_q6
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
                 across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
@@ -335,25 +333,25 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
+                    minus_level_q6_of_q3 = (
+                        across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -361,15 +359,14 @@ def unrolled(k: Constants) -> Unrolled:
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
-                centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
-                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_up + 0.0, cos_q6_before_q6_of_q3_up + 0.0)
                 side_q6_of_q3 = (
                     1.0
                     if along_q6_of_q3*sin_q6_before_q6_of_q3_up - across_q6_of_q3*cos_q6_before_q6_of_q3_up >= 0.0
                     else -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    arctan2(sin_q6_before_q6_of_q3_up + 0.0, cos_q6_before_q6_of_q3_up + 0.0),
+                    (arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0) + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3),
                     0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
@@ -393,10 +390,8 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-        r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
-        # what the unknown links must span
-        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
+        wrist_x_from_q1 = point_from_q1_left - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -407,9 +402,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         sin_q3 = (sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
@@ -499,15 +492,15 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_up_up = 3.0
             refusal_left_down_down = 3.0
             refusal_left_down_up = 3.0
-        cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_right + wrist_y*sin_q1_right
-        r21_from_q1 = r21*cos_q1_right - r11*sin_q1_right
+        minus_r21_from_q1 = r11*sin_q1_right - r21*cos_q1_right
         r22_from_q1 = r22*cos_q1_right - r12*sin_q1_right
-        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        # q6: direction and distance of a point
+        radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
         cos_q5 = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
         # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
@@ -517,13 +510,10 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin(free_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
-        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down
         r21_from_q1_before_q56_before_q6_of_q3_down = (
-            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - r33_times_radius_q6
+            (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
-        wrist_x_from_q1_before_q6_of_q3 = (
-            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
-        )
+        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
         # a later step needs this of q6: no larger in size than
@@ -546,17 +536,17 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_along = -d5*r31*cos_q5
+            minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 + point_from_q1_right
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
                 across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
@@ -565,25 +555,25 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
+                    minus_level_q6_of_q3 = (
+                        across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -591,15 +581,14 @@ def unrolled(k: Constants) -> Unrolled:
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
-                centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
-                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_down + 0.0, cos_q6_before_q6_of_q3_down + 0.0)
                 side_q6_of_q3 = (
                     1.0
                     if along_q6_of_q3*sin_q6_before_q6_of_q3_down - across_q6_of_q3*cos_q6_before_q6_of_q3_down >= 0.0
                     else -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    arctan2(sin_q6_before_q6_of_q3_down + 0.0, cos_q6_before_q6_of_q3_down + 0.0),
+                    (arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0) + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3),
                     0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
@@ -623,9 +612,8 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-            r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
-            wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+            r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - r33_times_radius_q6
+            wrist_x_from_q1 = point_from_q1_right - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -636,9 +624,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         sin_q3 = (sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
@@ -671,12 +657,11 @@ def unrolled(k: Constants) -> Unrolled:
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
             r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
         else:
-            r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up
-            r21_from_q1_before_q56_before_q6_of_q3_up = r33_times_radius_q6 + r21_from_q1_before_q6_before_q6_of_q3*cos_q5
+            r21_from_q1_before_q56_before_q6_of_q3_up = (
+                r33_times_radius_q6 + (r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up)*cos_q5
+            )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
-        wrist_x_from_q1_before_q6_of_q3 = (
-            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
-        )
+        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -693,17 +678,17 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_along = -d5*r31*cos_q5
+            minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = point_from_q1_right - d5_times_r33_times_radius_q6
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
                 across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
@@ -712,25 +697,25 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
+                    minus_level_q6_of_q3 = (
+                        across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -738,15 +723,14 @@ def unrolled(k: Constants) -> Unrolled:
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)) + 0.0, highest_q6_of_q3 + 0.0)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)) + 0.0, lowest_q6_of_q3 + 0.0)
-                centre_q6_of_q3 = arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0)
-                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_up + 0.0, cos_q6_before_q6_of_q3_up + 0.0)
                 side_q6_of_q3 = (
                     1.0
                     if along_q6_of_q3*sin_q6_before_q6_of_q3_up - across_q6_of_q3*cos_q6_before_q6_of_q3_up >= 0.0
                     else -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    arctan2(sin_q6_before_q6_of_q3_up + 0.0, cos_q6_before_q6_of_q3_up + 0.0),
+                    (arctan2(across_q6_of_q3 + 0.0, along_q6_of_q3 + 0.0) + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3),
                     0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
@@ -770,10 +754,8 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-        r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
-        # what the unknown links must span
-        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
+        wrist_x_from_q1 = point_from_q1_right - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -784,9 +766,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         sin_q3 = (sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            angle_of_arm_along_q2 = arctan2(arm_across_q2 + 0.0, arm_along_q2 + 0.0)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
             angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
             angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
@@ -943,46 +923,52 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
-        ref_a1, ref_a2, _, _, _, ref_a6 = reference
+        ref_a1, ref_a2, _, _, _, ref_a6 = 6*(0.0,) if reference is None else reference
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
-        sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
-            return 8*(None,)
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # how far ahead of the axis the point is
+        if ahead_squared_q1 > 0.0:
+            ahead_q1 = sqrt(ahead_squared_q1)
+        else:
+            # q1: out of reach
+            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+                return 8*(None,)
+            ahead_q1 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
-            sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
-            cos_swing_q1 = -d4/divisor_q1
-            cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
-            cos_q1_left = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
-            sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
-            cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
-            sin_q1_left = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
-            cos_q1_right = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
-            sin_q1_right = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
+            d4_times_wrist_y = d4*wrist_y
+            ahead_q1_times_wrist_x = ahead_q1*wrist_x
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_left = (-ahead_q1_times_wrist_x - d4_times_wrist_y)/divisor_q1
+            ahead_q1_times_wrist_y = ahead_q1*wrist_y
+            d4_times_wrist_x = d4*wrist_x
+            sin_q1_left = (d4_times_wrist_x - ahead_q1_times_wrist_y)/divisor_q1
+            point_from_q1_left = -ahead_q1
+            cos_q1_right = (ahead_q1_times_wrist_x - d4_times_wrist_y)/divisor_q1
+            sin_q1_right = (ahead_q1_times_wrist_y + d4_times_wrist_x)/divisor_q1
+            point_from_q1_right = -point_from_q1_left
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_left = cos(free_a1)
             sin_q1_left = sin(free_a1)
+            point_from_q1_left = wrist_x*cos_q1_left + wrist_y*sin_q1_left
             cos_q1_right = cos_q1_left
             sin_q1_right = sin_q1_left
-        cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_left + wrist_y*sin_q1_left
-        r21_from_q1 = r21*cos_q1_left - r11*sin_q1_left
+            point_from_q1_right = wrist_x*cos_q1_right + wrist_y*sin_q1_right
+        minus_r21_from_q1 = r11*sin_q1_left - r21*cos_q1_left
         r22_from_q1 = r22*cos_q1_left - r12*sin_q1_left
-        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        # q6: direction and distance of a point
+        radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
         cos_q5 = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
         # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
@@ -992,16 +978,12 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin(free_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
-        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down
         r21_from_q1_before_q56_before_q6_of_q3_down = (
-            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - r33_times_radius_q6
+            (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
-        wrist_x_from_q1_before_q6_of_q3 = (
-            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
-        )
+        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
-        wrist_z = z - d6*r33
-        wrist_y_from_q1_fixed = wrist_z - d1
+        wrist_y_from_q1_fixed = z - d6*r33 - d1
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -1021,19 +1003,19 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_along = -d5*r31*cos_q5
+            minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 + point_from_q1_left
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
                 across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
@@ -1042,25 +1024,25 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
+                    minus_level_q6_of_q3 = (
+                        across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -1068,15 +1050,14 @@ def unrolled(k: Constants) -> Unrolled:
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
-                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down)
                 side_q6_of_q3 = (
                     1.0
                     if along_q6_of_q3*sin_q6_before_q6_of_q3_down - across_q6_of_q3*cos_q6_before_q6_of_q3_down >= 0.0
                     else -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down),
+                    arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
                     0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
@@ -1100,9 +1081,8 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-            r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
-            wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+            r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - r33_times_radius_q6
+            wrist_x_from_q1 = point_from_q1_left - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1115,35 +1095,30 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
-            angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
-            angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+            angle_q2_left_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_left_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_up_down = free_a2
-            angle_q2_down_down = free_a2
-        axis_a2_left_up_down = offset_a2 + angle_q2_up_down*RADIAN
+            angle_q2_left_up_down = free_a2
+            angle_q2_left_down_down = free_a2
         angle_q3_down = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_left_up_down = angle_q3_down*RADIAN
-        axis_a3_left_up_down = offset_a3 + part_of_axis_a3_left_up_down
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4: what the sum q234 leaves
-        axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)*RADIAN
+        axis_a4_left_up_down = offset_a4 + (angle_with_q4_down - angle_q2_left_up_down - angle_q3_down)*RADIAN
         axis_a5_left_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN
         axis_a6_left_down = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
         if radius_q6 > 1e-11:
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
             r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
         else:
-            r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up
-            r21_from_q1_before_q56_before_q6_of_q3_up = r33_times_radius_q6 + r21_from_q1_before_q6_before_q6_of_q3*cos_q5
+            r21_from_q1_before_q56_before_q6_of_q3_up = (
+                r33_times_radius_q6 + (r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up)*cos_q5
+            )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
-        wrist_x_from_q1_before_q6_of_q3 = (
-            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
-        )
+        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -1158,19 +1133,19 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_along = -d5*r31*cos_q5
+            minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = point_from_q1_left - d5_times_r33_times_radius_q6
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
                 across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
@@ -1179,25 +1154,25 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
+                    minus_level_q6_of_q3 = (
+                        across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -1205,15 +1180,14 @@ def unrolled(k: Constants) -> Unrolled:
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
-                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up)
                 side_q6_of_q3 = (
                     1.0
                     if along_q6_of_q3*sin_q6_before_q6_of_q3_up - across_q6_of_q3*cos_q6_before_q6_of_q3_up >= 0.0
                     else -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up),
+                    arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
                     0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
@@ -1237,10 +1211,8 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-        r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
-        # what the unknown links must span
-        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
+        wrist_x_from_q1 = point_from_q1_left - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1252,42 +1224,34 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
-            angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
-            angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+            angle_q2_left_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_left_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_up_up = free_a2
-            angle_q2_down_up = free_a2
-        axis_a2_left_up_up = offset_a2 + angle_q2_up_up*RADIAN
+            angle_q2_left_up_up = free_a2
+            angle_q2_left_down_up = free_a2
         angle_q3_up = arctan2(sin_q3, cos_q3)
-        part_of_axis_a3 = angle_q3_up*RADIAN
-        axis_a3_left_up_up = offset_a3 + part_of_axis_a3
+        part_of_axis_a3_left_up_up = angle_q3_up*RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4: what the sum q234 leaves
-        axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)*RADIAN
+        axis_a4_left_up_up = offset_a4 + (angle_with_q4_up - angle_q2_left_up_up - angle_q3_up)*RADIAN
         axis_a5_left_up = offset_a5_times_2 - axis_a5_left_down
         axis_a6_left_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
-        axis_a2_left_down_down = offset_a2 + angle_q2_down_down*RADIAN
-        axis_a3_left_down_down = offset_a3 - part_of_axis_a3_left_up_down
         # q4: what the sum q234 leaves
-        axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_down_down)*RADIAN
-        axis_a2_left_down_up = offset_a2 + angle_q2_down_up*RADIAN
-        axis_a3_left_down_up = offset_a3 - part_of_axis_a3
+        axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_left_down_down)*RADIAN
         # q4: what the sum q234 leaves
-        axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_down_up)*RADIAN
-        cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y = wrist_x*cos_q1_right + wrist_y*sin_q1_right
-        r21_from_q1 = r21*cos_q1_right - r11*sin_q1_right
+        axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up)*RADIAN
+        minus_r21_from_q1 = r11*sin_q1_right - r21*cos_q1_right
         r22_from_q1 = r22*cos_q1_right - r12*sin_q1_right
-        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        # q6: direction and distance of a point
+        radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
         cos_q5 = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
         # its reference where it is free
         if radius_q6 > 1e-11:
-            cos_q6_before_q6_of_q3_down = -r21_from_q1/radius_q6
+            cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
             sin_q6_before_q6_of_q3_down = r22_from_q1/radius_q6
             cos_q6_before_q6_of_q3_up = -cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = -sin_q6_before_q6_of_q3_down
@@ -1297,13 +1261,10 @@ def unrolled(k: Constants) -> Unrolled:
             sin_q6_before_q6_of_q3_down = sin(free_a6)
             cos_q6_before_q6_of_q3_up = cos_q6_before_q6_of_q3_down
             sin_q6_before_q6_of_q3_up = sin_q6_before_q6_of_q3_down
-        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down
         r21_from_q1_before_q56_before_q6_of_q3_down = (
-            r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - r33_times_radius_q6
+            (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
-        wrist_x_from_q1_before_q6_of_q3 = (
-            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_down
-        )
+        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
         # a later step needs this of q6: no larger in size than
@@ -1326,17 +1287,17 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_along = -d5*r31*cos_q5
+            minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y + d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 + point_from_q1_right
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
                 across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
@@ -1345,25 +1306,25 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_down - along_q6_of_q3*cos_q6_before_q6_of_q3_down
+                    minus_level_q6_of_q3 = (
+                        across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -1371,15 +1332,14 @@ def unrolled(k: Constants) -> Unrolled:
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
-                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down)
                 side_q6_of_q3 = (
                     1.0
                     if along_q6_of_q3*sin_q6_before_q6_of_q3_down - across_q6_of_q3*cos_q6_before_q6_of_q3_down >= 0.0
                     else -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    arctan2(sin_q6_before_q6_of_q3_down, cos_q6_before_q6_of_q3_down),
+                    arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
                     0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
@@ -1403,9 +1363,8 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-            r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - r33_times_radius_q6
-            wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+            r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - r33_times_radius_q6
+            wrist_x_from_q1 = point_from_q1_right - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1418,35 +1377,30 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
-            angle_q2_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
-            angle_q2_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+            angle_q2_right_up_down = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_right_down_down = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_up_down = free_a2
-            angle_q2_down_down = free_a2
-        axis_a2_right_up_down = offset_a2 + angle_q2_up_down*RADIAN
+            angle_q2_right_up_down = free_a2
+            angle_q2_right_down_down = free_a2
         angle_q3_down = arctan2(sin_q3, cos_q3)
         part_of_axis_a3_right_up_down = angle_q3_down*RADIAN
-        axis_a3_right_up_down = offset_a3 + part_of_axis_a3_right_up_down
         angle_with_q4_down = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4: what the sum q234 leaves
-        axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_up_down - angle_q3_down)*RADIAN
+        axis_a4_right_up_down = offset_a4 + (angle_with_q4_down - angle_q2_right_up_down - angle_q3_down)*RADIAN
         axis_a5_right_down = offset_a5 + arctan2(radius_q6, cos_q5)*RADIAN
         axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
         if radius_q6 > 1e-11:
             r21_from_q1_before_q56_before_q6_of_q3_up = -r21_from_q1_before_q56_before_q6_of_q3_down
             r22_from_q1_before_q6_before_q6_of_q3_up = -r22_from_q1_before_q6_before_q6_of_q3_down
         else:
-            r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up
-            r21_from_q1_before_q56_before_q6_of_q3_up = r33_times_radius_q6 + r21_from_q1_before_q6_before_q6_of_q3*cos_q5
+            r21_from_q1_before_q56_before_q6_of_q3_up = (
+                r33_times_radius_q6 + (r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up)*cos_q5
+            )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
-        wrist_x_from_q1_before_q6_of_q3 = (
-            cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56_before_q6_of_q3_up
-        )
+        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -1463,17 +1417,17 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across = d5*r31
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             d5_times_r33_times_radius_q6 = d5*r33*radius_q6
-            wrist_x_from_q1_along = -d5*r31*cos_q5
+            minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = point_from_q1_right - d5_times_r33_times_radius_q6
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
-                    + 2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed
+                    - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
                 )
                 across_q6_of_q3 = (
                     wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2
@@ -1482,25 +1436,25 @@ def unrolled(k: Constants) -> Unrolled:
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3_up - along_q6_of_q3*cos_q6_before_q6_of_q3_up
+                    minus_level_q6_of_q3 = (
+                        across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -1508,15 +1462,14 @@ def unrolled(k: Constants) -> Unrolled:
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
-                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up)
                 side_q6_of_q3 = (
                     1.0
                     if along_q6_of_q3*sin_q6_before_q6_of_q3_up - across_q6_of_q3*cos_q6_before_q6_of_q3_up >= 0.0
                     else -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    arctan2(sin_q6_before_q6_of_q3_up, cos_q6_before_q6_of_q3_up),
+                    arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
                     0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
@@ -1540,10 +1493,8 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-        r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-        r21_from_q1_before_q56 = r33_times_radius_q6 + r21_from_q1_before_q6*cos_q5
-        # what the unknown links must span
-        wrist_x_from_q1 = cos_q1_times_wrist_x_plus_sin_q1_times_wrist_y - d5*r21_from_q1_before_q56
+        r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
+        wrist_x_from_q1 = point_from_q1_right - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1555,37 +1506,47 @@ def unrolled(k: Constants) -> Unrolled:
         cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
         sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
+            angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
-            angle_q2_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
-            angle_q2_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
+            angle_q2_right_up_up = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+            angle_q2_right_down_up = angle_of_arm_along_q2 + angle_of_wrist_x_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_up_up = free_a2
-            angle_q2_down_up = free_a2
-        axis_a2_right_up_up = offset_a2 + angle_q2_up_up*RADIAN
+            angle_q2_right_up_up = free_a2
+            angle_q2_right_down_up = free_a2
         angle_q3_up = arctan2(sin_q3, cos_q3)
-        part_of_axis_a3 = angle_q3_up*RADIAN
-        axis_a3_right_up_up = offset_a3 + part_of_axis_a3
+        part_of_axis_a3_right_up_up = angle_q3_up*RADIAN
         angle_with_q4_up = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
         # q4: what the sum q234 leaves
-        axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_up_up - angle_q3_up)*RADIAN
+        axis_a4_right_up_up = offset_a4 + (angle_with_q4_up - angle_q2_right_up_up - angle_q3_up)*RADIAN
         axis_a5_right_up = offset_a5_times_2 - axis_a5_right_down
         axis_a6_right_up = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
-        axis_a2_right_down_down = offset_a2 + angle_q2_down_down*RADIAN
-        axis_a3_right_down_down = offset_a3 - part_of_axis_a3_right_up_down
         # q4: what the sum q234 leaves
-        axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_down_down)*RADIAN
-        axis_a2_right_down_up = offset_a2 + angle_q2_down_up*RADIAN
-        axis_a3_right_down_up = offset_a3 - part_of_axis_a3
+        axis_a4_right_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_right_down_down)*RADIAN
         # q4: what the sum q234 leaves
-        axis_a4_right_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_down_up)*RADIAN
+        axis_a4_right_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_right_down_up)*RADIAN
         return (
             (
                 (
-                    axis_a1_left, axis_a2_left_up_down, axis_a3_left_up_down, axis_a4_left_up_down, axis_a5_left_down,
+                    axis_a1_left, offset_a2 + angle_q2_left_up_down*RADIAN, offset_a3 + part_of_axis_a3_left_up_down,
+                    axis_a4_left_up_down, axis_a5_left_down, axis_a6_left_down,
+                )
+                if refusal_left_down == 0.0
+                else None
+            ),
+            (
+                (
+                    axis_a1_right, offset_a2 + angle_q2_right_up_down*RADIAN,
+                    offset_a3 + part_of_axis_a3_right_up_down, axis_a4_right_up_down, axis_a5_right_down,
+                    axis_a6_right_down,
+                )
+                if refusal_right_down == 0.0
+                else None
+            ),
+            (
+                (
+                    axis_a1_left, offset_a2 + angle_q2_left_down_down*RADIAN,
+                    offset_a3 - part_of_axis_a3_left_up_down, axis_a4_left_down_down, axis_a5_left_down,
                     axis_a6_left_down,
                 )
                 if refusal_left_down == 0.0
@@ -1593,104 +1554,94 @@ def unrolled(k: Constants) -> Unrolled:
             ),
             (
                 (
-                    axis_a1_right, axis_a2_right_up_down, axis_a3_right_up_down, axis_a4_right_up_down,
-                    axis_a5_right_down, axis_a6_right_down,
+                    axis_a1_right, offset_a2 + angle_q2_right_down_down*RADIAN,
+                    offset_a3 - part_of_axis_a3_right_up_down, axis_a4_right_down_down, axis_a5_right_down,
+                    axis_a6_right_down,
                 )
                 if refusal_right_down == 0.0
                 else None
             ),
             (
                 (
-                    axis_a1_left, axis_a2_left_down_down, axis_a3_left_down_down, axis_a4_left_down_down,
-                    axis_a5_left_down, axis_a6_left_down,
-                )
-                if refusal_left_down == 0.0
-                else None
-            ),
-            (
-                (
-                    axis_a1_right, axis_a2_right_down_down, axis_a3_right_down_down, axis_a4_right_down_down,
-                    axis_a5_right_down, axis_a6_right_down,
-                )
-                if refusal_right_down == 0.0
-                else None
-            ),
-            (
-                (
-                    axis_a1_left, axis_a2_left_up_up, axis_a3_left_up_up, axis_a4_left_up_up, axis_a5_left_up,
-                    axis_a6_left_up,
+                    axis_a1_left, offset_a2 + angle_q2_left_up_up*RADIAN, offset_a3 + part_of_axis_a3_left_up_up,
+                    axis_a4_left_up_up, axis_a5_left_up, axis_a6_left_up,
                 )
                 if refusal_left_up == 0.0
                 else None
             ),
             (
                 (
-                    axis_a1_right, axis_a2_right_up_up, axis_a3_right_up_up, axis_a4_right_up_up, axis_a5_right_up,
-                    axis_a6_right_up,
+                    axis_a1_right, offset_a2 + angle_q2_right_up_up*RADIAN, offset_a3 + part_of_axis_a3_right_up_up,
+                    axis_a4_right_up_up, axis_a5_right_up, axis_a6_right_up,
                 )
                 if refusal_right_up == 0.0
                 else None
             ),
             (
                 (
-                    axis_a1_left, axis_a2_left_down_up, axis_a3_left_down_up, axis_a4_left_down_up, axis_a5_left_up,
-                    axis_a6_left_up,
+                    axis_a1_left, offset_a2 + angle_q2_left_down_up*RADIAN, offset_a3 - part_of_axis_a3_left_up_up,
+                    axis_a4_left_down_up, axis_a5_left_up, axis_a6_left_up,
                 )
                 if refusal_left_up == 0.0
                 else None
             ),
             (
                 (
-                    axis_a1_right, axis_a2_right_down_up, axis_a3_right_down_up, axis_a4_right_down_up,
-                    axis_a5_right_up, axis_a6_right_up,
+                    axis_a1_right, offset_a2 + angle_q2_right_down_up*RADIAN, offset_a3 - part_of_axis_a3_right_up_up,
+                    axis_a4_right_down_up, axis_a5_right_up, axis_a6_right_up,
                 )
                 if refusal_right_up == 0.0
                 else None
             ),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_shoulder, sigma_elbow, sigma_wrist = signs
-        ref_a1, ref_a2, _, _, _, ref_a6 = reference
+        ref_a1, ref_a2, _, _, _, ref_a6 = 6*(0.0,) if reference is None else reference
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
-        sine_square_q1 = (distance_q1 - d4)*(d4 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
-            return None
+        ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # how far ahead of the axis the point is
+        if ahead_squared_q1 > 0.0:
+            ahead_q1 = -sqrt(ahead_squared_q1)*sigma_shoulder
+        else:
+            # q1: out of reach
+            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+                return None
+            ahead_q1 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
-            cos_swing_q1 = -d4/divisor_q1
-            sin_swing_q1 = -(sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_shoulder
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1
-            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1 = (ahead_q1*wrist_x - d4*wrist_y)/divisor_q1
+            sin_q1 = (ahead_q1*wrist_y + d4*wrist_x)/divisor_q1
+            point_from_q1 = ahead_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
+            point_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1
         cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
-        r21_from_q1 = r21*cos_q1 - r11*sin_q1
+        minus_r21_from_q1 = r11*sin_q1 - r21*cos_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
-        radius_q6 = sqrt(r21_from_q1*r21_from_q1 + r22_from_q1*r22_from_q1)  # q6: direction and distance of a point
+        # q6: direction and distance of a point
+        radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         q6_radius_of_q5 = radius_q6*sigma_wrist
         # its reference where it is free
         if radius_q6 > 1e-11:
-            along_q6 = -r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
+            along_q6 = minus_r21_from_q1*sigma_wrist  # q6: polar angle in the r31 and r32 equations
             cos_q6_before_q6_of_q3 = along_q6/radius_q6
-            across_q6 = r22_from_q1*sigma_wrist
-            sin_q6_before_q6_of_q3 = across_q6/radius_q6
+            sin_q6_before_q6_of_q3 = (r22_from_q1*sigma_wrist)/radius_q6
         else:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3 = cos(free_a6)
             sin_q6_before_q6_of_q3 = sin(free_a6)
-        r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
-        r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5*r33
-        wrist_x_from_q1_before_q6_of_q3 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
+        r21_from_q1_before_q56_before_q6_of_q3 = (
+            (r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3)*cos_q5 - q6_radius_of_q5*r33
+        )
+        wrist_x_from_q1_before_q6_of_q3 = point_from_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
         r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
         wrist_z = z - d6*r33
         wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
@@ -1710,44 +1661,36 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
-                wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
-                wrist_x_from_q1_along = -d5*r31*cos_q5
+                wrist_x_from_q1_fixed = point_from_q1 + d5*q6_radius_of_q5*r33
                 wrist_y_from_q1_fixed = wrist_z - d1
-                wrist_y_from_q1_along = d5*r32
-                along_q6_of_q3 = (
-                    2.0*wrist_x_from_q1_along*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
-                )
-                wrist_x_from_q1_across = d5*r32*cos_q5
-                wrist_y_from_q1_across = d5*r31
-                across_q6_of_q3 = (
-                    2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
-                )
+                along_q6_of_q3 = 2.0*(d5*r32)*wrist_y_from_q1_fixed - 2.0*(d5*r31*cos_q5)*wrist_x_from_q1_fixed
+                across_q6_of_q3 = 2.0*(d5*r32*cos_q5)*wrist_x_from_q1_fixed + 2.0*(d5*r31)*wrist_y_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
                 if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
-                    level_q6_of_q3 = (
-                        value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
+                    minus_level_q6_of_q3 = (
+                        across_q6_of_q3*sin_q6_before_q6_of_q3 + along_q6_of_q3*cos_q6_before_q6_of_q3 - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -1755,15 +1698,14 @@ def unrolled(k: Constants) -> Unrolled:
                     lowest_q6_of_q3 = -1.0
                 near_q6_of_q3 = arctan2(root((1.0 - highest_q6_of_q3)*(1.0 + highest_q6_of_q3)), highest_q6_of_q3)
                 far_q6_of_q3 = arctan2(root((1.0 - lowest_q6_of_q3)*(1.0 + lowest_q6_of_q3)), lowest_q6_of_q3)
-                centre_q6_of_q3 = arctan2(across_q6_of_q3, along_q6_of_q3)
-                angle_q6_of_q3 = arctan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3)
                 side_q6_of_q3 = (
                     1.0
                     if along_q6_of_q3*sin_q6_before_q6_of_q3 - across_q6_of_q3*cos_q6_before_q6_of_q3 >= 0.0
                     else -1.0
                 )
                 moved_q6_of_q3 = nearest_on_arc(
-                    angle_q6_of_q3, centre_q6_of_q3 + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
+                    arctan2(sin_q6_before_q6_of_q3, cos_q6_before_q6_of_q3),
+                    arctan2(across_q6_of_q3, along_q6_of_q3) + 0.5*(far_q6_of_q3 + near_q6_of_q3)*side_q6_of_q3,
                     0.5*far_q6_of_q3 - 0.5*near_q6_of_q3,
                 )
                 cos_q6_after_q6_of_q3 = cos(moved_q6_of_q3)
@@ -1783,9 +1725,8 @@ def unrolled(k: Constants) -> Unrolled:
                 else:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
-            r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
-            r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
-            wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56
+            r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - q6_radius_of_q5*r33
+            wrist_x_from_q1 = point_from_q1 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1793,28 +1734,24 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = (
             (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
         )
-        # q3: out of reach
-        if not (sine_square_q3 >= -1e-12):
-            return None
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        if reach > machine_scale_times_free_angle:
-            arm_along_q2 = a2 + a3*cos_q3
-            arm_across_q2 = a3*sin_q3
-            angle_of_arm_along_q2 = arctan2(arm_across_q2, arm_along_q2)
-            angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
-            angle_q2 = angle_of_wrist_x_from_q1 - angle_of_arm_along_q2
+        if sine_square_q3 > 0.0:
+            sin_q3 = sqrt(sine_square_q3)*sigma_elbow
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2 = free_a2
-        axis_a2 = offset_a2 + angle_q2*RADIAN
+            # q3: out of reach
+            if not (sine_square_q3 >= -1e-12):
+                return None
+            sin_q3 = 0.0
+        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        if reach > machine_scale_times_free_angle:
+            angle_q2 = arctan2(wrist_y_from_q1, wrist_x_from_q1) - arctan2(a3*sin_q3, a2 + a3*cos_q3)
+        else:
+            angle_q2 = (ref_a2 - offset_a2)*DEGREE
         angle_q3 = arctan2(sin_q3, cos_q3)
-        axis_a3 = offset_a3 + angle_q3*RADIAN
-        angle_with_q4 = arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6)
-        axis_a4 = offset_a4 + (angle_with_q4 - angle_q2 - angle_q3)*RADIAN  # q4: what the sum q234 leaves
-        axis_a5 = offset_a5 + arctan2(q6_radius_of_q5, cos_q5)*RADIAN
-        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN
-        return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
+        # q4: what the sum q234 leaves
+        axis_a4 = offset_a4 + (arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6) - angle_q2 - angle_q3)*RADIAN
+        return (
+            offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN, offset_a2 + angle_q2*RADIAN, offset_a3 + angle_q3*RADIAN,
+            axis_a4, offset_a5 + arctan2(q6_radius_of_q5, cos_q5)*RADIAN, offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN,
+        )
 
     return Unrolled(every_branch, branches, branch)

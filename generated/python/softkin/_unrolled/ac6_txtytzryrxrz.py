@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.ac6_txtytzryrxrz import Constants
 
 
@@ -120,9 +120,13 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_upright
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped + 0.0, direction_x_a4_flipped + 0.0)/DEGREE
-            scaled_r11_from_a4 = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
-            direction_y_a6 = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
-            direction_of_axis_a6 = offset_a6 + arctan2(direction_y_a6 + 0.0, scaled_r11_from_a4 + 0.0)/DEGREE
+            direction_of_axis_a6 = (
+                offset_a6
+                + arctan2(
+                    direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12 + 0.0,
+                    direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31 + 0.0,
+                )/DEGREE
+            )
         axis_a4_flipped = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_flipped - open_a4 < 179.999999999:
             axis_a4_flipped = nearest_period(axis_a4_flipped, open_a4)
@@ -153,10 +157,10 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
-        _, _, _, ref_a4, _, _ = reference
+        _, _, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
@@ -185,7 +189,6 @@ def unrolled(k: Constants) -> Unrolled:
             scaled_r11_from_a4_flipped = direction_x_a4_flipped*r11 - direction_y_a4_flipped*r31
             direction_y_a6_flipped = direction_y_a4_flipped*r32 - direction_x_a4_flipped*r12
         axis_a4 = offset_a4 + arctan2(direction_y_a4_upright, direction_x_a4_upright)*RADIAN
-        axis_a5_upright = offset_a5 + arctan2(-r23, radius_a4)*RADIAN
         axis_a6 = offset_a6 + arctan2(direction_y_a6_upright, scaled_r11_from_a4_upright)*RADIAN
         if radius_a4 > 1e-11:
             direction_of_axis_a4 = 180.0 + axis_a4
@@ -193,23 +196,22 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_a4_flipped, direction_x_a4_flipped)*RADIAN
             direction_of_axis_a6 = offset_a6 + arctan2(direction_y_a6_flipped, scaled_r11_from_a4_flipped)*RADIAN
-        axis_a5_flipped = offset_a5 + arctan2(-r23, -radius_a4)*RADIAN
         return (
-            (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5_upright, axis_a6),
-            (axis_a1, axis_a2, axis_a3, direction_of_axis_a4, axis_a5_flipped, direction_of_axis_a6),
+            (axis_a1, axis_a2, axis_a3, axis_a4, offset_a5 + arctan2(-r23, radius_a4)*RADIAN, axis_a6),
+            (
+                axis_a1, axis_a2, axis_a3, direction_of_axis_a4, offset_a5 + arctan2(-r23, -radius_a4)*RADIAN,
+                direction_of_axis_a6,
+            ),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         (sigma_wrist,) = signs
-        _, _, _, ref_a4, _, _ = reference
+        _, _, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
-        axis_a1 = offset_a1 + wrist_x
         wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23
-        axis_a2 = offset_a2 + wrist_y
         wrist_z = z - flange_x*r31 - flange_y*r32 - flange_z*r33
-        axis_a3 = offset_a3 + wrist_z
         radius_a4 = sqrt(r13*r13 + r33*r33)  # a4: direction and distance of a point
         # a4: polar angle in the r33 and r13 equations; its reference where it is free
         if radius_a4 > 1e-11:
@@ -227,11 +229,11 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a4 = sin(free_a4)
             scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
             direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
-        axis_a4 = offset_a4 + arctan2(direction_y_a4, direction_x_a4)*RADIAN
-        a4_radius_of_a5 = radius_a4*sigma_wrist
-        sin_a5 = -r23
-        axis_a5 = offset_a5 + arctan2(sin_a5, a4_radius_of_a5)*RADIAN
-        axis_a6 = offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN
-        return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
+        return (
+            offset_a1 + wrist_x, offset_a2 + wrist_y, offset_a3 + wrist_z,
+            offset_a4 + arctan2(direction_y_a4, direction_x_a4)*RADIAN,
+            offset_a5 + arctan2(-r23, radius_a4*sigma_wrist)*RADIAN,
+            offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN,
+        )
 
     return Unrolled(every_branch, branches, branch)

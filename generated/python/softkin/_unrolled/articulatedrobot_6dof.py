@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.articulatedrobot_6dof import Constants
 
 
@@ -55,6 +55,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     swing_scale_q3 = k.swing_scale_q3
+    constant_part = 1e-34*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_plus_effective_q3 = a2 + effective_q3
     a2_minus_effective_q3 = a2 - effective_q3
@@ -91,46 +92,49 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
-        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
-            return 8*(3.0,)
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # how far ahead of the axis the point is
+        if ahead_squared_q1 > 0.0:
+            ahead_q1 = sqrt(ahead_squared_q1)
+        else:
+            # q1: out of reach
+            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+                return 8*(3.0,)
+            ahead_q1 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
-            sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
-            cos_swing_q1 = -d3/divisor_q1
-            cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
-            cos_q1_front = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
-            cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
-            sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
-            sin_q1_front = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
-            cos_q1_back = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
-            sin_q1_back = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
+            d3_times_wrist_y = d3*wrist_y
+            ahead_q1_times_wrist_x = ahead_q1*wrist_x
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_front = (ahead_q1_times_wrist_x - d3_times_wrist_y)/divisor_q1
+            d3_times_wrist_x = d3*wrist_x
+            ahead_q1_times_wrist_y = ahead_q1*wrist_y
+            sin_q1_front = (ahead_q1_times_wrist_y + d3_times_wrist_x)/divisor_q1
+            point_from_q1_front = ahead_q1
+            cos_q1_back = (-ahead_q1_times_wrist_x - d3_times_wrist_y)/divisor_q1
+            sin_q1_back = (d3_times_wrist_x - ahead_q1_times_wrist_y)/divisor_q1
+            point_from_q1_back = -ahead_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)
             sin_q1_front = sin(free_a1)
+            point_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front
             cos_q1_back = cos_q1_front
             sin_q1_back = sin_q1_front
+            point_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back
         r13_from_q1 = r13*cos_q1_front + r23*sin_q1_front
-        wrist_x_from_q1 = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
-        wrist_z = z - d6*r33
-        wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
             (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
             *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
-        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = effective_q3*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3*cos_swing_q3
-            angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
+            angle_of_arm_across_q2 = arctan2(effective_q3*minus_sin_swing_q3 + 0.0, a2 + effective_q3*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -138,18 +142,18 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3 - minus_angle_of_swing_q3
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         r23_from_q1 = r23*cos_q1_front - r13*sin_q1_front
         # q4: direction and distance of a point
-        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -199,10 +203,12 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_front_down_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234 + 0.0, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
+                offset_a6_plus_180
+                + arctan2(
+                    direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123 + 0.0,
+                    direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123 + 0.0,
+                )/DEGREE
             )
         axis_a4_front_down_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_front_down_up - open_a4 < 179.999999999:
@@ -213,16 +219,16 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_front_down_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_front_down_up - open_a6 < 179.999999999:
             axis_a6_front_down_up = nearest_period(axis_a6_front_down_up, open_a6)
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3 + minus_angle_of_swing_q3
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         # q4: direction and distance of a point
-        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -259,10 +265,12 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_front_up_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234 + 0.0, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
+                offset_a6_plus_180
+                + arctan2(
+                    direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123 + 0.0,
+                    direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123 + 0.0,
+                )/DEGREE
             )
         axis_a4_front_up_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_front_up_up - open_a4 < 179.999999999:
@@ -318,19 +326,17 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_front_up_down = 3.0
             refusal_front_up_up = 3.0
         r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
-        wrist_x_from_q1 = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
+        wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
             (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
             *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
-        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = effective_q3*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3*cos_swing_q3
-            angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
+            angle_of_arm_across_q2 = arctan2(effective_q3*minus_sin_swing_q3 + 0.0, a2 + effective_q3*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -338,18 +344,18 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3 - minus_angle_of_swing_q3
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         r23_from_q1 = r23*cos_q1_back - r13*sin_q1_back
         # q4: direction and distance of a point
-        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -393,10 +399,12 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_back_down_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234 + 0.0, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
+                offset_a6_plus_180
+                + arctan2(
+                    direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123 + 0.0,
+                    direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123 + 0.0,
+                )/DEGREE
             )
         axis_a4_back_down_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_back_down_up - open_a4 < 179.999999999:
@@ -407,16 +415,16 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_back_down_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_back_down_up - open_a6 < 179.999999999:
             axis_a6_back_down_up = nearest_period(axis_a6_back_down_up, open_a6)
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3 + minus_angle_of_swing_q3
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         # q4: direction and distance of a point
-        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 1e-11:
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
@@ -453,10 +461,12 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6 = 180.0 + axis_a6_back_up_down
         else:
             direction_of_axis_a4 = offset_a4 + arctan2(direction_y_q4_up + 0.0, direction_x_q4_up + 0.0)/DEGREE
-            minus_scaled_r21_from_q1234 = direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123
-            minus_scaled_r22_from_q1234 = direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123
             direction_of_axis_a6 = (
-                offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234 + 0.0, minus_scaled_r22_from_q1234 + 0.0)/DEGREE
+                offset_a6_plus_180
+                + arctan2(
+                    direction_x_q4_up*r21_from_q1 + direction_y_q4_up*r11_from_q123 + 0.0,
+                    direction_x_q4_up*r22_from_q1 + direction_y_q4_up*r12_from_q123 + 0.0,
+                )/DEGREE
             )
         axis_a4_back_up_up = direction_of_axis_a4  # A4: its turn
         if not -180.000000001 <= axis_a4_back_up_up - open_a4 < 179.999999999:
@@ -578,40 +588,45 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
-        ref_a1, ref_a2, _, ref_a4, _, _ = reference
+        ref_a1, ref_a2, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
-        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
-            return 8*(None,)
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # how far ahead of the axis the point is
+        if ahead_squared_q1 > 0.0:
+            ahead_q1 = sqrt(ahead_squared_q1)
+        else:
+            # q1: out of reach
+            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+                return 8*(None,)
+            ahead_q1 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
-            sin_swing_q1_times_wrist_x = wrist_x*sin_swing_q1
-            cos_swing_q1 = -d3/divisor_q1
-            cos_swing_q1_times_wrist_y = wrist_y*cos_swing_q1
-            cos_q1_front = (cos_swing_q1_times_wrist_y + sin_swing_q1_times_wrist_x)/divisor_q1
-            cos_swing_q1_times_wrist_x = wrist_x*cos_swing_q1
-            sin_swing_q1_times_wrist_y = wrist_y*sin_swing_q1
-            sin_q1_front = (sin_swing_q1_times_wrist_y - cos_swing_q1_times_wrist_x)/divisor_q1
-            cos_q1_back = (cos_swing_q1_times_wrist_y - sin_swing_q1_times_wrist_x)/divisor_q1
-            sin_q1_back = (-cos_swing_q1_times_wrist_x - sin_swing_q1_times_wrist_y)/divisor_q1
+            d3_times_wrist_y = d3*wrist_y
+            ahead_q1_times_wrist_x = ahead_q1*wrist_x
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_front = (ahead_q1_times_wrist_x - d3_times_wrist_y)/divisor_q1
+            d3_times_wrist_x = d3*wrist_x
+            ahead_q1_times_wrist_y = ahead_q1*wrist_y
+            sin_q1_front = (ahead_q1_times_wrist_y + d3_times_wrist_x)/divisor_q1
+            point_from_q1_front = ahead_q1
+            cos_q1_back = (-ahead_q1_times_wrist_x - d3_times_wrist_y)/divisor_q1
+            sin_q1_back = (d3_times_wrist_x - ahead_q1_times_wrist_y)/divisor_q1
+            point_from_q1_back = -ahead_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)
             sin_q1_front = sin(free_a1)
+            point_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front
             cos_q1_back = cos_q1_front
             sin_q1_back = sin_q1_front
-        wrist_x_from_q1 = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
-        wrist_z = z - d6*r33
-        wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+            point_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back
+        wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
@@ -620,12 +635,10 @@ def unrolled(k: Constants) -> Unrolled:
         )
         refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN
-        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = effective_q3*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3*cos_swing_q3
-            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+            angle_of_arm_across_q2 = arctan2(effective_q3*minus_sin_swing_q3, a2 + effective_q3*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -634,38 +647,34 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = free_a2
             angle_q2_up = free_a2
         axis_a2_front_down = offset_a2 + angle_q2_down*RADIAN
-        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3 - minus_angle_of_swing_q3
         axis_a3_front_down = offset_a3 + angle_q3*RADIAN
         r13_from_q1 = r13*cos_q1_front + r23*sin_q1_front
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         r23_from_q1 = r23*cos_q1_front - r13*sin_q1_front
         # q4: direction and distance of a point
-        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
         r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
-            r32_times_sin_q23 = r32*sin_q23
-            cos_q23_times_r12_from_q1 = r12_from_q1*cos_q23
-            minus_scaled_r21_from_q1234_down = cos_q23_times_r12_from_q1 + r32_times_sin_q23
-            r31_times_sin_q23 = r31*sin_q23
-            cos_q23_times_r11_from_q1 = r11_from_q1*cos_q23
-            minus_scaled_r22_from_q1234_down = -cos_q23_times_r11_from_q1 - r31_times_sin_q23
+            minus_scaled_r21_from_q1234_down = r12_from_q1*cos_q23 + r32*sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
             r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4_down = -r13_from_q123
+                direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -direction_x_q4_down
+                direction_x_q4_up = -minus_r13_from_q123
                 direction_y_q4_up = -r23_from_q1
             else:
                 direction_x_q4_down = cos(free_a4)
@@ -696,35 +705,30 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6_front_down_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
-        axis_a5_front_down_up = offset_a5_times_2 - axis_a5_front_down_down
         axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3 + minus_angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3*RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         # q4: direction and distance of a point
-        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
-            r32_times_sin_q23 = r32*sin_q23
-            cos_q23_times_r12_from_q1 = r12_from_q1*cos_q23
-            minus_scaled_r21_from_q1234_down = cos_q23_times_r12_from_q1 + r32_times_sin_q23
-            r31_times_sin_q23 = r31*sin_q23
-            cos_q23_times_r11_from_q1 = r11_from_q1*cos_q23
-            minus_scaled_r22_from_q1234_down = -cos_q23_times_r11_from_q1 - r31_times_sin_q23
+            minus_scaled_r21_from_q1234_down = r12_from_q1*cos_q23 + r32*sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
             r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4_down = -r13_from_q123
+                direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -direction_x_q4_down
+                direction_x_q4_up = -minus_r13_from_q123
                 direction_y_q4_up = -r23_from_q1
             else:
                 direction_x_q4_down = cos(free_a4)
@@ -755,8 +759,7 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6_front_up_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
-        axis_a5_front_up_up = offset_a5_times_2 - axis_a5_front_up_down
-        wrist_x_from_q1 = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
+        wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
@@ -765,12 +768,10 @@ def unrolled(k: Constants) -> Unrolled:
         )
         refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN
-        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = effective_q3*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3*cos_swing_q3
-            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+            angle_of_arm_across_q2 = arctan2(effective_q3*minus_sin_swing_q3, a2 + effective_q3*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -779,38 +780,34 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = free_a2
             angle_q2_up = free_a2
         axis_a2_back_down = offset_a2 + angle_q2_down*RADIAN
-        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
+        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3 - minus_angle_of_swing_q3
         axis_a3_back_down = offset_a3 + angle_q3*RADIAN
         r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         r23_from_q1 = r23*cos_q1_back - r13*sin_q1_back
         # q4: direction and distance of a point
-        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
         r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
-            r32_times_sin_q23 = r32*sin_q23
-            cos_q23_times_r12_from_q1 = r12_from_q1*cos_q23
-            minus_scaled_r21_from_q1234_down = cos_q23_times_r12_from_q1 + r32_times_sin_q23
-            r31_times_sin_q23 = r31*sin_q23
-            cos_q23_times_r11_from_q1 = r11_from_q1*cos_q23
-            minus_scaled_r22_from_q1234_down = -cos_q23_times_r11_from_q1 - r31_times_sin_q23
+            minus_scaled_r21_from_q1234_down = r12_from_q1*cos_q23 + r32*sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
             r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4_down = -r13_from_q123
+                direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -direction_x_q4_down
+                direction_x_q4_up = -minus_r13_from_q123
                 direction_y_q4_up = -r23_from_q1
             else:
                 direction_x_q4_down = cos(free_a4)
@@ -841,35 +838,30 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6_back_down_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
-        axis_a5_back_down_up = offset_a5_times_2 - axis_a5_back_down_down
         axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3 + minus_angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3*RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         # q4: direction and distance of a point
-        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
+        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4_down = -r13_from_q123
+            direction_x_q4_down = minus_r13_from_q123
             direction_y_q4_down = r23_from_q1
-            r32_times_sin_q23 = r32*sin_q23
-            cos_q23_times_r12_from_q1 = r12_from_q1*cos_q23
-            minus_scaled_r21_from_q1234_down = cos_q23_times_r12_from_q1 + r32_times_sin_q23
-            r31_times_sin_q23 = r31*sin_q23
-            cos_q23_times_r11_from_q1 = r11_from_q1*cos_q23
-            minus_scaled_r22_from_q1234_down = -cos_q23_times_r11_from_q1 - r31_times_sin_q23
+            minus_scaled_r21_from_q1234_down = r12_from_q1*cos_q23 + r32*sin_q23
+            minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
             r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
             r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4_down = -r13_from_q123
+                direction_x_q4_down = minus_r13_from_q123
                 direction_y_q4_down = r23_from_q1
-                direction_x_q4_up = -direction_x_q4_down
+                direction_x_q4_up = -minus_r13_from_q123
                 direction_y_q4_up = -r23_from_q1
             else:
                 direction_x_q4_down = cos(free_a4)
@@ -900,7 +892,6 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6_back_up_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
-        axis_a5_back_up_up = offset_a5_times_2 - axis_a5_back_up_down
         return (
             (
                 (
@@ -937,7 +928,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_front, axis_a2_front_down, axis_a3_front_down, direction_of_axis_a4_front_down_up,
-                    axis_a5_front_down_up, direction_of_axis_a6_front_down_up,
+                    offset_a5_times_2 - axis_a5_front_down_down, direction_of_axis_a6_front_down_up,
                 )
                 if refusal_front == 0.0
                 else None
@@ -945,7 +936,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_back, axis_a2_back_down, axis_a3_back_down, direction_of_axis_a4_back_down_up,
-                    axis_a5_back_down_up, direction_of_axis_a6_back_down_up,
+                    offset_a5_times_2 - axis_a5_back_down_down, direction_of_axis_a6_back_down_up,
                 )
                 if refusal_back == 0.0
                 else None
@@ -953,7 +944,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_front, axis_a2_front_up, axis_a3_front_up, direction_of_axis_a4_front_up_up,
-                    axis_a5_front_up_up, direction_of_axis_a6_front_up_up,
+                    offset_a5_times_2 - axis_a5_front_up_down, direction_of_axis_a6_front_up_up,
                 )
                 if refusal_front == 0.0
                 else None
@@ -961,101 +952,98 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_back, axis_a2_back_up, axis_a3_back_up, direction_of_axis_a4_back_up_up,
-                    axis_a5_back_up_up, direction_of_axis_a6_back_up_up,
+                    offset_a5_times_2 - axis_a5_back_up_down, direction_of_axis_a6_back_up_up,
                 )
                 if refusal_back == 0.0
                 else None
             ),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         sigma_arm, sigma_elbow, sigma_hand = signs
-        ref_a1, ref_a2, _, ref_a4, _, _ = reference
+        ref_a1, ref_a2, _, ref_a4, _, _ = 6*(0.0,) if reference is None else reference
         wrist_x = x - d6*r13  # the point that the last joints turn about
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
-        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
-            return None
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # how far ahead of the axis the point is
+        if ahead_squared_q1 > 0.0:
+            ahead_q1 = sqrt(ahead_squared_q1)*sigma_arm
+        else:
+            # q1: out of reach
+            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+                return None
+            ahead_q1 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-            cos_q1 = (wrist_y*cos_swing_q1 + wrist_x*sin_swing_q1)/divisor_q1
-            sin_q1 = (wrist_y*sin_swing_q1 - wrist_x*cos_swing_q1)/divisor_q1
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/divisor_q1
+            sin_q1 = (ahead_q1*wrist_y + d3*wrist_x)/divisor_q1
+            point_from_q1 = ahead_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
-        wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
-        wrist_z = z - d6*r33
-        wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+            point_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1
+        wrist_x_from_q1 = point_from_q1 - a1  # what the unknown links must span
+        wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
             (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
             *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
         )
-        # q3: out of reach
-        if not (sine_square_q3 >= -1e-12):
-            return None
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN
-        sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
+        if sine_square_q3 > 0.0:
+            minus_sin_swing_q3 = sqrt(sine_square_q3)*sigma_elbow
+        else:
+            # q3: out of reach
+            if not (sine_square_q3 >= -1e-12):
+                return None
+            minus_sin_swing_q3 = 0.0
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = -effective_q3*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3*cos_swing_q3
-            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
-            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
-            angle_q2 = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2 = (
+                arctan2(effective_q3*minus_sin_swing_q3, a2 + effective_q3*cos_swing_q3)
+                - arctan2(wrist_x_from_q1, wrist_y_from_q1)
+            )
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2 = free_a2
-        axis_a2 = offset_a2 + angle_q2*RADIAN
-        angle_of_swing_q3 = arctan2(sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
-        axis_a3 = offset_a3 + angle_q3*RADIAN
+            angle_q2 = (ref_a2 - offset_a2)*DEGREE
+        angle_q3 = angle_of_a3_by_effective_q3 - arctan2(minus_sin_swing_q3, cos_swing_q3)
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
         angle_q23 = angle_q2 + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
-        r13_from_q123 = r33*cos_q23 - r13_from_q1*sin_q23
+        minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
         r23_from_q1 = r23*cos_q1 - r13*sin_q1
         # q4: direction and distance of a point
-        radius_q4 = sqrt(r13_from_q123*r13_from_q123 + r23_from_q1*r23_from_q1)
-        r11_from_q1 = r11*cos_q1 + r21*sin_q1
-        r12_from_q1 = r12*cos_q1 + r22*sin_q1
+        radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
-            direction_x_q4 = -r13_from_q123*sigma_hand
+            direction_x_q4 = minus_r13_from_q123*sigma_hand
             direction_y_q4 = r23_from_q1*sigma_hand
-            minus_scaled_r21_from_q1234 = sigma_hand*(r12_from_q1*cos_q23 + r32*sin_q23)
-            minus_scaled_r22_from_q1234 = -sigma_hand*(r11_from_q1*cos_q23 + r31*sin_q23)
+            minus_scaled_r21_from_q1234 = sigma_hand*((r12*cos_q1 + r22*sin_q1)*cos_q23 + r32*sin_q23)
+            minus_scaled_r22_from_q1234 = -sigma_hand*((r11*cos_q1 + r21*sin_q1)*cos_q23 + r31*sin_q23)
         else:
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
-                direction_x_q4 = -r13_from_q123*sigma_hand
+                direction_x_q4 = minus_r13_from_q123*sigma_hand
                 direction_y_q4 = r23_from_q1*sigma_hand
             else:
                 free_a4 = (ref_a4 - offset_a4)*DEGREE
                 direction_x_q4 = cos(free_a4)
                 direction_y_q4 = sin(free_a4)
-            r21_from_q1 = r21*cos_q1 - r11*sin_q1
-            r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
-            minus_scaled_r21_from_q1234 = direction_x_q4*r21_from_q1 + direction_y_q4*r11_from_q123
-            r22_from_q1 = r22*cos_q1 - r12*sin_q1
-            r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
-            minus_scaled_r22_from_q1234 = direction_x_q4*r22_from_q1 + direction_y_q4*r12_from_q123
-        axis_a4 = offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN
-        q4_radius_of_q5 = radius_q4*sigma_hand
+            r11_from_q123 = r31*cos_q23 - (r11*cos_q1 + r21*sin_q1)*sin_q23
+            minus_scaled_r21_from_q1234 = (r21*cos_q1 - r11*sin_q1)*direction_x_q4 + direction_y_q4*r11_from_q123
+            r12_from_q123 = r32*cos_q23 - (r12*cos_q1 + r22*sin_q1)*sin_q23
+            minus_scaled_r22_from_q1234 = (r22*cos_q1 - r12*sin_q1)*direction_x_q4 + direction_y_q4*r12_from_q123
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
-        axis_a5 = offset_a5 + arctan2(q4_radius_of_q5, cos_q5)*RADIAN
-        axis_a6 = offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN
-        return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
+        return (
+            offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN, offset_a2 + angle_q2*RADIAN, offset_a3 + angle_q3*RADIAN,
+            offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN,
+            offset_a5 + arctan2(radius_q4*sigma_hand, cos_q5)*RADIAN,
+            offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN,
+        )
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.caxis import Constants
 
 
@@ -31,35 +31,35 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
             and -1e9 <= r33 <= 1e9 and -1e9 <= ref_c <= 1e9
         ):
-            return 1*(2.0,)
+            return (2.0,)
         # columns of length one, at right angles
         if not (
             abs(r11*r12 + r21*r22 + r31*r32) <= 1e-6 and abs(r11*r13 + r21*r23 + r31*r33) <= 1e-6
             and abs(r12*r13 + r22*r23 + r32*r33) <= 1e-6 and abs(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6
             and abs(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6 and abs(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6
         ):
-            return 1*(2.0,)
+            return (2.0,)
         # a right-handed frame
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
-            return 1*(2.0,)
+            return (2.0,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return 1*(3.0,)
+            return (3.0,)
         open_c = mid_c if single_c > 0.0 else ref_c  # C: where its turn is open
         axis_c = offset_c + arctan2(heading_across, heading_along + 0.0)/DEGREE  # C: its turn
         if not -180.000000001 <= axis_c - open_c < 179.999999999:
             axis_c = nearest_period(axis_c, open_c)
         # limits of C
         if not (axis_c >= lowest_c and axis_c <= highest_c):
-            return 1*(3.0,)
+            return (3.0,)
         return (
             (axis_c,),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
@@ -67,13 +67,12 @@ def unrolled(k: Constants) -> Unrolled:
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return 1*(None,)
-        axis_c = offset_c + arctan2(heading_across, heading_along)*RADIAN
+            return (None,)
         return (
-            (axis_c,),
+            (offset_c + arctan2(heading_across, heading_along)*RADIAN,),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
@@ -82,7 +81,6 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return None
-        axis_c = offset_c + arctan2(heading_across, heading_along)*RADIAN
-        return (axis_c,)
+        return (offset_c + arctan2(heading_across, heading_along)*RADIAN,)
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.crane import Constants
 
 
@@ -38,13 +38,13 @@ def unrolled(k: Constants) -> Unrolled:
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_phi <= 1e9
             and -1e9 <= ref_theta <= 1e9
         ):
-            return 1*(2.0,)
+            return (2.0,)
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
         axis_r = offset_r + radius_phi
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return 1*(3.0,)
+            return (3.0,)
         # its reference where it is free
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
@@ -59,7 +59,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_theta = nearest_period(axis_theta, open_theta)
         # limits of Theta
         if not (axis_theta >= lowest_theta and axis_theta <= highest_theta):
-            return 1*(3.0,)
+            return (3.0,)
         # its reference where it is free
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
@@ -71,18 +71,17 @@ def unrolled(k: Constants) -> Unrolled:
         axis_phi = offset_phi + arctan2(direction_y_phi + 0.0, direction_x_phi + 0.0)/DEGREE
         # limits of Phi
         if not (axis_phi >= lowest_phi and axis_phi <= highest_phi):
-            return 1*(3.0,)
+            return (3.0,)
         return (
             (axis_r, axis_theta, axis_phi),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        _, ref_theta, ref_phi = reference
+        _, ref_theta, ref_phi = 3*(0.0,) if reference is None else reference
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        axis_r = offset_r + radius_phi
         # its reference where it is free
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
@@ -91,7 +90,6 @@ def unrolled(k: Constants) -> Unrolled:
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN
         # its reference where it is free
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
@@ -100,18 +98,19 @@ def unrolled(k: Constants) -> Unrolled:
             free_phi = (ref_phi - offset_phi)*DEGREE
             direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
             direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        axis_phi = offset_phi + arctan2(direction_y_phi, direction_x_phi)*RADIAN
         return (
-            (axis_r, axis_theta, axis_phi),
+            (
+                offset_r + radius_phi, offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN,
+                offset_phi + arctan2(direction_y_phi, direction_x_phi)*RADIAN,
+            ),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        _, ref_theta, ref_phi = reference
+        _, ref_theta, ref_phi = 3*(0.0,) if reference is None else reference
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        axis_r = offset_r + radius_phi
         # its reference where it is free
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
@@ -120,7 +119,6 @@ def unrolled(k: Constants) -> Unrolled:
             free_theta = (ref_theta - offset_theta)*DEGREE
             direction_x_theta = cos(free_theta)
             direction_y_theta = sin(free_theta)
-        axis_theta = offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN
         # its reference where it is free
         if radius_phi > machine_scale_times_free_angle:
             direction_x_phi = z
@@ -129,7 +127,9 @@ def unrolled(k: Constants) -> Unrolled:
             free_phi = (ref_phi - offset_phi)*DEGREE
             direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
             direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
-        axis_phi = offset_phi + arctan2(direction_y_phi, direction_x_phi)*RADIAN
-        return (axis_r, axis_theta, axis_phi)
+        return (
+            offset_r + radius_phi, offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN,
+            offset_phi + arctan2(direction_y_phi, direction_x_phi)*RADIAN,
+        )
 
     return Unrolled(every_branch, branches, branch)

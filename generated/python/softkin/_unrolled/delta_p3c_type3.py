@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.delta_p3c_type3 import Constants
 
 
@@ -96,9 +96,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return 8*(3.0,)
-        inner_arm_1_squared_plus_span_1_x_squared = inner_arm_1_squared + span_1_x*span_1_x
-        part_of_sine_square_a1 = inner_arm_1_squared_plus_span_1_x_squared + span_1_y*span_1_y
-        part_of_sine_square_a1_plus_z_squared = part_of_sine_square_a1 + z*z
+        part_of_sine_square_a1_plus_z_squared = inner_arm_1_squared + span_1_x*span_1_x + span_1_y*span_1_y + z*z
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
@@ -107,9 +105,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(part_of_sine_square_a1_plus_z_squared + divisor_a1*inner_arm_1_times_2 - outer_arm_1_squared)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return 8*(3.0,)
+        if sine_square_a1 > 0.0:
+            sin_swing_a1 = sqrt(sine_square_a1)
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return 8*(3.0,)
+            sin_swing_a1 = 0.0
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = y - constant_part_4  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
@@ -117,9 +119,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return 8*(3.0,)
-        inner_arm_2_squared_plus_span_2_x_squared = inner_arm_2_squared + span_2_x*span_2_x
-        part_of_sine_square_a2 = inner_arm_2_squared_plus_span_2_x_squared + span_2_y*span_2_y
-        part_of_sine_square_a2_plus_z_squared = part_of_sine_square_a2 + z*z
+        part_of_sine_square_a2_plus_z_squared = inner_arm_2_squared + span_2_x*span_2_x + span_2_y*span_2_y + z*z
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
@@ -128,9 +128,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(part_of_sine_square_a2_plus_z_squared + divisor_a2*inner_arm_2_times_2 - outer_arm_2_squared)
             /(swing_scale_a2*swing_scale_a2)
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 8*(3.0,)
+        if sine_square_a2 > 0.0:
+            sin_swing_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 8*(3.0,)
+            sin_swing_a2 = 0.0
         span_3_x = x - constant_part_5  # rod 3
         span_3_y = y - constant_part_6  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
@@ -138,9 +142,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return 8*(3.0,)
-        inner_arm_3_squared_plus_span_3_x_squared = inner_arm_3_squared + span_3_x*span_3_x
-        part_of_sine_square_a3 = inner_arm_3_squared_plus_span_3_x_squared + span_3_y*span_3_y
-        part_of_sine_square_a3_plus_z_squared = part_of_sine_square_a3 + z*z
+        part_of_sine_square_a3_plus_z_squared = inner_arm_3_squared + span_3_x*span_3_x + span_3_y*span_3_y + z*z
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # kept as a product
@@ -149,10 +151,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(part_of_sine_square_a3_plus_z_squared + divisor_a3*inner_arm_3_times_2 - outer_arm_3_squared)
             /(swing_scale_a3*swing_scale_a3)
         )
-        # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
-            return 8*(3.0,)
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        if sine_square_a3 > 0.0:
+            sin_swing_a3 = sqrt(sine_square_a3)
+        else:
+            # a3: out of reach
+            if not (sine_square_a3 >= -1e-12):
+                return 8*(3.0,)
+            sin_swing_a3 = 0.0
         sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
         cos_swing_a1 = (part_of_sine_square_a1_plus_z_squared - outer_arm_1_squared)/swing_scale_a1
         along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
@@ -160,7 +165,6 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a1_times_z_by_divisor_a1 = z*cos_swing_a1/divisor_a1
         along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1*sin_swing_a1/divisor_a1
         sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
         cos_swing_a2 = (part_of_sine_square_a2_plus_z_squared - outer_arm_2_squared)/swing_scale_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
@@ -172,9 +176,8 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a2_times_z_by_divisor_a2 = z*cos_swing_a2/divisor_a2
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
-        rod_2_z_outward = z - pivot_2_z
-        sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
+        minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
+        rod_2_z_outward = minus_pivot_2_z + z
         sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
         cos_swing_a3 = (part_of_sine_square_a3_plus_z_squared - outer_arm_3_squared)/swing_scale_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
@@ -186,8 +189,8 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a3_times_z_by_divisor_a3 = z*cos_swing_a3/divisor_a3
         along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
         sin_a3 = -along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
-        rod_3_z_outward = z - pivot_3_z
+        minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
+        rod_3_z_outward = minus_pivot_3_z + z
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_outward - open_a3 < 179.999999999:
@@ -206,8 +209,8 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         rod_3_y_inward = y - pivot_3_y
         sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
-        rod_3_z_inward = z - pivot_3_z
+        minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
+        rod_3_z_inward = minus_pivot_3_z + z
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
             axis_a3_inward = nearest_period(axis_a3_inward, open_a3)
@@ -217,8 +220,8 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
-        rod_2_z_inward = z - pivot_2_z
+        minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
+        rod_2_z_inward = minus_pivot_2_z + z
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
@@ -227,8 +230,8 @@ def unrolled(k: Constants) -> Unrolled:
             rod_1_x = x - pivot_1_x
             pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
             rod_1_y = y - pivot_1_y
-            pivot_1_z = -inner_arm_1*sin_a1  # rod 1
-            rod_1_z = z - pivot_1_z
+            minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
+            rod_1_z = minus_pivot_1_z + z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
@@ -304,8 +307,8 @@ def unrolled(k: Constants) -> Unrolled:
             rod_1_x = x - pivot_1_x
             pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
             rod_1_y = y - pivot_1_y
-            pivot_1_z = -inner_arm_1*sin_a1  # rod 1
-            rod_1_z = z - pivot_1_z
+            minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
+            rod_1_z = minus_pivot_1_z + z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
                 if axis_a3_outward >= lowest_a3 and axis_a3_outward <= highest_a3:
@@ -414,7 +417,7 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         span_1_x = x - constant_part  # rod 1
@@ -424,9 +427,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return 8*(None,)
-        inner_arm_1_squared_plus_span_1_x_squared = inner_arm_1_squared + span_1_x*span_1_x
-        part_of_sine_square_a1 = inner_arm_1_squared_plus_span_1_x_squared + span_1_y*span_1_y
-        part_of_sine_square_a1_plus_z_squared = part_of_sine_square_a1 + z*z
+        part_of_sine_square_a1_plus_z_squared = inner_arm_1_squared + span_1_x*span_1_x + span_1_y*span_1_y + z*z
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
@@ -435,9 +436,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(part_of_sine_square_a1_plus_z_squared + divisor_a1*inner_arm_1_times_2 - outer_arm_1_squared)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return 8*(None,)
+        if sine_square_a1 > 0.0:
+            sin_swing_a1 = sqrt(sine_square_a1)
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return 8*(None,)
+            sin_swing_a1 = 0.0
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = y - constant_part_4  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
@@ -445,9 +450,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return 8*(None,)
-        inner_arm_2_squared_plus_span_2_x_squared = inner_arm_2_squared + span_2_x*span_2_x
-        part_of_sine_square_a2 = inner_arm_2_squared_plus_span_2_x_squared + span_2_y*span_2_y
-        part_of_sine_square_a2_plus_z_squared = part_of_sine_square_a2 + z*z
+        part_of_sine_square_a2_plus_z_squared = inner_arm_2_squared + span_2_x*span_2_x + span_2_y*span_2_y + z*z
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
@@ -456,9 +459,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(part_of_sine_square_a2_plus_z_squared + divisor_a2*inner_arm_2_times_2 - outer_arm_2_squared)
             /(swing_scale_a2*swing_scale_a2)
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 8*(None,)
+        if sine_square_a2 > 0.0:
+            sin_swing_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 8*(None,)
+            sin_swing_a2 = 0.0
         span_3_x = x - constant_part_5  # rod 3
         span_3_y = y - constant_part_6  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
@@ -466,9 +473,7 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return 8*(None,)
-        inner_arm_3_squared_plus_span_3_x_squared = inner_arm_3_squared + span_3_x*span_3_x
-        part_of_sine_square_a3 = inner_arm_3_squared_plus_span_3_x_squared + span_3_y*span_3_y
-        part_of_sine_square_a3_plus_z_squared = part_of_sine_square_a3 + z*z
+        part_of_sine_square_a3_plus_z_squared = inner_arm_3_squared + span_3_x*span_3_x + span_3_y*span_3_y + z*z
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # kept as a product
@@ -477,10 +482,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(part_of_sine_square_a3_plus_z_squared + divisor_a3*inner_arm_3_times_2 - outer_arm_3_squared)
             /(swing_scale_a3*swing_scale_a3)
         )
-        # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
-            return 8*(None,)
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        if sine_square_a3 > 0.0:
+            sin_swing_a3 = sqrt(sine_square_a3)
+        else:
+            # a3: out of reach
+            if not (sine_square_a3 >= -1e-12):
+                return 8*(None,)
+            sin_swing_a3 = 0.0
         sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
         cos_swing_a1 = (part_of_sine_square_a1_plus_z_squared - outer_arm_1_squared)/swing_scale_a1
         along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
@@ -492,9 +500,8 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a1_times_z_by_divisor_a1 = z*cos_swing_a1/divisor_a1
         along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1*sin_swing_a1/divisor_a1
         sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
-        rod_1_z = z - pivot_1_z
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
+        rod_1_z = minus_pivot_1_z + z
         sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
         cos_swing_a2 = (part_of_sine_square_a2_plus_z_squared - outer_arm_2_squared)/swing_scale_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
@@ -506,9 +513,8 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a2_times_z_by_divisor_a2 = z*cos_swing_a2/divisor_a2
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
-        rod_2_z_outward = z - pivot_2_z
-        sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
+        minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
+        rod_2_z_outward = minus_pivot_2_z + z
         sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
         cos_swing_a3 = (part_of_sine_square_a3_plus_z_squared - outer_arm_3_squared)/swing_scale_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
@@ -520,8 +526,8 @@ def unrolled(k: Constants) -> Unrolled:
         cos_swing_a3_times_z_by_divisor_a3 = z*cos_swing_a3/divisor_a3
         along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
         sin_a3 = -along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
-        rod_3_z_outward = z - pivot_3_z
+        minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
+        rod_3_z_outward = minus_pivot_3_z + z
         type2_rods_coplanar = (
             constant_part_7
             *(
@@ -541,8 +547,8 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         rod_3_y_inward = y - pivot_3_y
         sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - cos_swing_a3_times_z_by_divisor_a3
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
-        rod_3_z_inward = z - pivot_3_z
+        minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
+        rod_3_z_inward = minus_pivot_3_z + z
         type2_rods_coplanar = (
             constant_part_7
             *(
@@ -560,8 +566,8 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
-        rod_2_z_inward = z - pivot_2_z
+        minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
+        rod_2_z_inward = minus_pivot_2_z + z
         type2_rods_coplanar = (
             constant_part_7
             *(
@@ -589,8 +595,8 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
         rod_1_y = y - pivot_1_y
         sin_a1 = along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
-        rod_1_z = z - pivot_1_z
+        minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
+        rod_1_z = minus_pivot_1_z + z
         type2_rods_coplanar = (
             constant_part_7
             *(
@@ -643,7 +649,7 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_inward, axis_a2_inward, axis_a3_inward) if refusal_inward_inward_inward == 0.0 else None),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
@@ -662,9 +668,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(constant_part_8 + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return None
+        if sine_square_a1 > 0.0:
+            sin_swing_a1 = -sqrt(sine_square_a1)*sigma_knee_1
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return None
+            sin_swing_a1 = 0.0
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = y - constant_part_4  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
@@ -680,9 +690,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(constant_part_9 + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
             /(swing_scale_a2*swing_scale_a2)
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return None
+        if sine_square_a2 > 0.0:
+            sin_swing_a2 = -sqrt(sine_square_a2)*sigma_knee_2
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return None
+            sin_swing_a2 = 0.0
         span_3_x = x - constant_part_5  # rod 3
         span_3_y = y - constant_part_6  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
@@ -698,39 +712,40 @@ def unrolled(k: Constants) -> Unrolled:
             *(constant_part_10 + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
             /(swing_scale_a3*swing_scale_a3)
         )
-        # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
-            return None
+        if sine_square_a3 > 0.0:
+            sin_swing_a3 = -sqrt(sine_square_a3)*sigma_knee_3
+        else:
+            # a3: out of reach
+            if not (sine_square_a3 >= -1e-12):
+                return None
+            sin_swing_a3 = 0.0
         cos_swing_a1 = (constant_part_8 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)/swing_scale_a1
-        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
         pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x = x - pivot_1_x
         pivot_1_y = constant_part_2 + inner_arm_1_times_sin_azimuth_1*cos_a1  # rod 1
         rod_1_y = y - pivot_1_y
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
-        pivot_1_z = -inner_arm_1*sin_a1  # rod 1
-        rod_1_z = z - pivot_1_z
+        minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
+        rod_1_z = minus_pivot_1_z + z
         cos_swing_a2 = (constant_part_9 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)/swing_scale_a2
-        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x = x - pivot_2_x
         pivot_2_y = constant_part_4 + inner_arm_2_times_sin_azimuth_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
-        pivot_2_z = -inner_arm_2*sin_a2  # rod 2
-        rod_2_z = z - pivot_2_z
+        minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
+        rod_2_z = minus_pivot_2_z + z
         cos_swing_a3 = (constant_part_10 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)/swing_scale_a3
-        sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x = x - pivot_3_x
         pivot_3_y = constant_part_6 + inner_arm_3_times_sin_azimuth_3*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - z*cos_swing_a3/divisor_a3
-        pivot_3_z = -inner_arm_3*sin_a3  # rod 3
-        rod_3_z = z - pivot_3_z
+        minus_pivot_3_z = inner_arm_3*sin_a3  # rod 3
+        rod_3_z = minus_pivot_3_z + z
         type2_rods_coplanar = (
             constant_part_7
             *(
@@ -741,9 +756,9 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
-        return (axis_a1, axis_a2, axis_a3)
+        return (
+            offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN,
+            offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN,
+        )
 
     return Unrolled(every_branch, branches, branch)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Unrolled
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.gantry2 import Constants
 
 
@@ -28,42 +28,38 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return 1*(2.0,)
+            return (2.0,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 1*(3.0,)
+            return (3.0,)
         axis_x = offset_x + x
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
-            return 1*(3.0,)
+            return (3.0,)
         axis_y = offset_y + y
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
-            return 1*(3.0,)
+            return (3.0,)
         return (
             (axis_x, axis_y),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 1*(None,)
-        axis_x = offset_x + x
-        axis_y = offset_y + y
+            return (None,)
         return (
-            (axis_x, axis_y),
+            (offset_x + x, offset_y + y),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
-        axis_x = offset_x + x
-        axis_y = offset_y + y
-        return (axis_x, axis_y)
+        return (offset_x + x, offset_y + y)
 
     return Unrolled(every_branch, branches, branch)

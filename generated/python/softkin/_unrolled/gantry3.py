@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from softkin._core import Unrolled
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.gantry3 import Constants
 
 
@@ -29,39 +29,33 @@ def unrolled(k: Constants) -> Unrolled:
         x, y, z = position
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
-            return 1*(2.0,)
+            return (2.0,)
         axis_x = offset_x + x
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
-            return 1*(3.0,)
+            return (3.0,)
         axis_y = offset_y + y
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
-            return 1*(3.0,)
+            return (3.0,)
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return 1*(3.0,)
+            return (3.0,)
         return (
             (axis_x, axis_y, axis_z),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        axis_x = offset_x + x
-        axis_y = offset_y + y
-        axis_z = offset_z + z
         return (
-            (axis_x, axis_y, axis_z),
+            (offset_x + x, offset_y + y, offset_z + z),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        axis_x = offset_x + x
-        axis_y = offset_y + y
-        axis_z = offset_z + z
-        return (axis_x, axis_y, axis_z)
+        return (offset_x + x, offset_y + y, offset_z + z)
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.gantrycutter2 import Constants
 
 
@@ -41,34 +41,34 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
             and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_r <= 1e9
         ):
-            return 1*(2.0,)
+            return (2.0,)
         # columns of length one, at right angles
         if not (
             abs(r11*r12 + r21*r22 + r31*r32) <= 1e-6 and abs(r11*r13 + r21*r23 + r31*r33) <= 1e-6
             and abs(r12*r13 + r22*r23 + r32*r33) <= 1e-6 and abs(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6
             and abs(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6 and abs(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6
         ):
-            return 1*(2.0,)
+            return (2.0,)
         # a right-handed frame
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
-            return 1*(2.0,)
+            return (2.0,)
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return 1*(3.0,)
+            return (3.0,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 1*(3.0,)
+            return (3.0,)
         axis_x = offset_x + x
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
-            return 1*(3.0,)
+            return (3.0,)
         axis_y = offset_y + y
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
-            return 1*(3.0,)
+            return (3.0,)
         direction_y_r = direction_r*heading_across
         open_r = mid_r if single_r > 0.0 else ref_r  # R: where its turn is open
         axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE  # R: its turn
@@ -76,12 +76,12 @@ def unrolled(k: Constants) -> Unrolled:
             axis_r = nearest_period(axis_r, open_r)
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return 1*(3.0,)
+            return (3.0,)
         return (
             (axis_x, axis_y, axis_r),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
@@ -89,19 +89,15 @@ def unrolled(k: Constants) -> Unrolled:
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
-            return 1*(None,)
+            return (None,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 1*(None,)
-        axis_x = offset_x + x
-        axis_y = offset_y + y
-        direction_y_r = direction_r*heading_across
-        axis_r = offset_r + arctan2(direction_y_r, heading_along)*RADIAN
+            return (None,)
         return (
-            (axis_x, axis_y, axis_r),
+            (offset_x + x, offset_y + y, offset_r + arctan2(direction_r*heading_across, heading_along)*RADIAN),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
@@ -113,10 +109,6 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
-        axis_x = offset_x + x
-        axis_y = offset_y + y
-        direction_y_r = direction_r*heading_across
-        axis_r = offset_r + arctan2(direction_y_r, heading_along)*RADIAN
-        return (axis_x, axis_y, axis_r)
+        return (offset_x + x, offset_y + y, offset_r + arctan2(direction_r*heading_across, heading_along)*RADIAN)
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import solve, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.hexapod import Constants
 
 
@@ -123,17 +123,17 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
             and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9
         ):
-            return 1*(2.0,)
+            return (2.0,)
         # columns of length one, at right angles
         if not (
             abs(r11*r12 + r21*r22 + r31*r32) <= 1e-6 and abs(r11*r13 + r21*r23 + r31*r33) <= 1e-6
             and abs(r12*r13 + r22*r23 + r32*r33) <= 1e-6 and abs(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6
             and abs(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6 and abs(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6
         ):
-            return 1*(2.0,)
+            return (2.0,)
         # a right-handed frame
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
-            return 1*(2.0,)
+            return (2.0,)
         platform_1_z_times_r13 = platform_1_z*r13
         platform_1_x_times_r11_plus_platform_1_y_times_r12 = platform_1_x*r11 + platform_1_y*r12
         span_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13 + x - base_1_x  # rod 1
@@ -148,7 +148,7 @@ def unrolled(k: Constants) -> Unrolled:
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link):
-            return 1*(3.0,)
+            return (3.0,)
         platform_2_z_times_r13 = platform_2_z*r13
         platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
         span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x  # rod 2
@@ -163,7 +163,7 @@ def unrolled(k: Constants) -> Unrolled:
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link):
-            return 1*(3.0,)
+            return (3.0,)
         platform_3_z_times_r13 = platform_3_z*r13
         platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
         span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x  # rod 3
@@ -178,7 +178,7 @@ def unrolled(k: Constants) -> Unrolled:
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link):
-            return 1*(3.0,)
+            return (3.0,)
         platform_4_z_times_r13 = platform_4_z*r13
         platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
         span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x  # rod 4
@@ -193,7 +193,7 @@ def unrolled(k: Constants) -> Unrolled:
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link):
-            return 1*(3.0,)
+            return (3.0,)
         platform_5_z_times_r13 = platform_5_z*r13
         platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
         span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x  # rod 5
@@ -208,7 +208,7 @@ def unrolled(k: Constants) -> Unrolled:
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link):
-            return 1*(3.0,)
+            return (3.0,)
         platform_6_z_times_r13 = platform_6_z*r13
         platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
         span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x  # rod 6
@@ -223,7 +223,7 @@ def unrolled(k: Constants) -> Unrolled:
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link):
-            return 1*(3.0,)
+            return (3.0,)
         # leg 1: its direction, and the moment of that about the platform's origin
         divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
         along_1_x = span_1_x/divisor_1
@@ -232,7 +232,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
         # leg 1: its joint on the base bends beyond its cone
         if not (cos_base_lean_1 >= least_cos_base):
-            return 1*(3.0,)
+            return (3.0,)
         # leg 2: its direction, and the moment of that about the platform's origin
         divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
         along_2_x = span_2_x/divisor_2
@@ -241,7 +241,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
         # leg 2: its joint on the base bends beyond its cone
         if not (cos_base_lean_2 >= least_cos_base):
-            return 1*(3.0,)
+            return (3.0,)
         # leg 3: its direction, and the moment of that about the platform's origin
         divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
         along_3_x = span_3_x/divisor_3
@@ -250,7 +250,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
         # leg 3: its joint on the base bends beyond its cone
         if not (cos_base_lean_3 >= least_cos_base):
-            return 1*(3.0,)
+            return (3.0,)
         # leg 4: its direction, and the moment of that about the platform's origin
         divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
         along_4_x = span_4_x/divisor_4
@@ -259,7 +259,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
         # leg 4: its joint on the base bends beyond its cone
         if not (cos_base_lean_4 >= least_cos_base):
-            return 1*(3.0,)
+            return (3.0,)
         # leg 5: its direction, and the moment of that about the platform's origin
         divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
         along_5_x = span_5_x/divisor_5
@@ -268,7 +268,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
         # leg 5: its joint on the base bends beyond its cone
         if not (cos_base_lean_5 >= least_cos_base):
-            return 1*(3.0,)
+            return (3.0,)
         # leg 6: its direction, and the moment of that about the platform's origin
         divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
         along_6_x = span_6_x/divisor_6
@@ -277,129 +277,135 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
         # leg 6: its joint on the base bends beyond its cone
         if not (cos_base_lean_6 >= least_cos_base):
-            return 1*(3.0,)
+            return (3.0,)
         cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
         cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
         cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
         cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
         # leg 1: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_1 >= least_cos_plate):
-            return 1*(3.0,)
+            return (3.0,)
         cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
         cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
         cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
         cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
         # leg 2: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_2 >= least_cos_plate):
-            return 1*(3.0,)
+            return (3.0,)
         cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
         cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
         cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
         cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
         # leg 3: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_3 >= least_cos_plate):
-            return 1*(3.0,)
+            return (3.0,)
         cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
         cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
         cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
         cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
         # leg 4: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_4 >= least_cos_plate):
-            return 1*(3.0,)
+            return (3.0,)
         cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
         cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
         cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
         cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
         # leg 5: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_5 >= least_cos_plate):
-            return 1*(3.0,)
+            return (3.0,)
         cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
         cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
         cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
         cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
         # leg 6: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_6 >= least_cos_plate):
-            return 1*(3.0,)
+            return (3.0,)
         arm_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23
         arm_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33
-        moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
         arm_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13
-        moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-        moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
         arm_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23
         arm_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33
-        moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
         arm_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13
-        moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-        moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
         arm_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23
         arm_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33
-        moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
         arm_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13
-        moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-        moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
         arm_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23
         arm_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33
-        moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
         arm_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13
-        moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-        moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
         arm_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23
         arm_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33
-        moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
         arm_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13
-        moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-        moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
         arm_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23
         arm_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33
-        moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
         arm_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13
-        moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-        moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
         # margin of the platform
         (determinant,) = solve(
             (
-                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+                (
+                    along_1_x, along_1_y, along_1_z, (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius,
+                    (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius,
+                    (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius,
+                ),
+                (
+                    along_2_x, along_2_y, along_2_z, (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius,
+                    (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius,
+                    (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius,
+                ),
+                (
+                    along_3_x, along_3_y, along_3_z, (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius,
+                    (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius,
+                    (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius,
+                ),
+                (
+                    along_4_x, along_4_y, along_4_z, (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius,
+                    (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius,
+                    (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius,
+                ),
+                (
+                    along_5_x, along_5_y, along_5_z, (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius,
+                    (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius,
+                    (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius,
+                ),
+                (
+                    along_6_x, along_6_y, along_6_z, (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius,
+                    (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius,
+                    (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius,
+                ),
             ),
             (),
         )
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign*determinant >= min_type2_margin):
-            return 1*(3.0,)
+            return (3.0,)
         axis_l1 = l1 + offset_l1
         # limits of L1
         if not (axis_l1 >= lowest_l1 and axis_l1 <= highest_l1):
-            return 1*(3.0,)
+            return (3.0,)
         axis_l2 = l2 + offset_l2
         # limits of L2
         if not (axis_l2 >= lowest_l2 and axis_l2 <= highest_l2):
-            return 1*(3.0,)
+            return (3.0,)
         axis_l3 = l3 + offset_l3
         # limits of L3
         if not (axis_l3 >= lowest_l3 and axis_l3 <= highest_l3):
-            return 1*(3.0,)
+            return (3.0,)
         axis_l4 = l4 + offset_l4
         # limits of L4
         if not (axis_l4 >= lowest_l4 and axis_l4 <= highest_l4):
-            return 1*(3.0,)
+            return (3.0,)
         axis_l5 = l5 + offset_l5
         # limits of L5
         if not (axis_l5 >= lowest_l5 and axis_l5 <= highest_l5):
-            return 1*(3.0,)
+            return (3.0,)
         axis_l6 = l6 + offset_l6
         # limits of L6
         if not (axis_l6 >= lowest_l6 and axis_l6 <= highest_l6):
-            return 1*(3.0,)
+            return (3.0,)
         return (
             (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         platform_1_z_times_r13 = platform_1_z*r13
@@ -416,7 +422,7 @@ def unrolled(k: Constants) -> Unrolled:
         l1 = (sqrt(root_square_l1) if root_square_l1 > 0.0 else 0.0)
         # leg 1: without length it has no direction
         if not (l1 > machine_scale_times_shortest_link):
-            return 1*(None,)
+            return (None,)
         platform_2_z_times_r13 = platform_2_z*r13
         platform_2_x_times_r11_plus_platform_2_y_times_r12 = platform_2_x*r11 + platform_2_y*r12
         span_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13 + x - base_2_x  # rod 2
@@ -431,7 +437,7 @@ def unrolled(k: Constants) -> Unrolled:
         l2 = (sqrt(root_square_l2) if root_square_l2 > 0.0 else 0.0)
         # leg 2: without length it has no direction
         if not (l2 > machine_scale_times_shortest_link):
-            return 1*(None,)
+            return (None,)
         platform_3_z_times_r13 = platform_3_z*r13
         platform_3_x_times_r11_plus_platform_3_y_times_r12 = platform_3_x*r11 + platform_3_y*r12
         span_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13 + x - base_3_x  # rod 3
@@ -446,7 +452,7 @@ def unrolled(k: Constants) -> Unrolled:
         l3 = (sqrt(root_square_l3) if root_square_l3 > 0.0 else 0.0)
         # leg 3: without length it has no direction
         if not (l3 > machine_scale_times_shortest_link):
-            return 1*(None,)
+            return (None,)
         platform_4_z_times_r13 = platform_4_z*r13
         platform_4_x_times_r11_plus_platform_4_y_times_r12 = platform_4_x*r11 + platform_4_y*r12
         span_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13 + x - base_4_x  # rod 4
@@ -461,7 +467,7 @@ def unrolled(k: Constants) -> Unrolled:
         l4 = (sqrt(root_square_l4) if root_square_l4 > 0.0 else 0.0)
         # leg 4: without length it has no direction
         if not (l4 > machine_scale_times_shortest_link):
-            return 1*(None,)
+            return (None,)
         platform_5_z_times_r13 = platform_5_z*r13
         platform_5_x_times_r11_plus_platform_5_y_times_r12 = platform_5_x*r11 + platform_5_y*r12
         span_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13 + x - base_5_x  # rod 5
@@ -476,7 +482,7 @@ def unrolled(k: Constants) -> Unrolled:
         l5 = (sqrt(root_square_l5) if root_square_l5 > 0.0 else 0.0)
         # leg 5: without length it has no direction
         if not (l5 > machine_scale_times_shortest_link):
-            return 1*(None,)
+            return (None,)
         platform_6_z_times_r13 = platform_6_z*r13
         platform_6_x_times_r11_plus_platform_6_y_times_r12 = platform_6_x*r11 + platform_6_y*r12
         span_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13 + x - base_6_x  # rod 6
@@ -491,7 +497,7 @@ def unrolled(k: Constants) -> Unrolled:
         l6 = (sqrt(root_square_l6) if root_square_l6 > 0.0 else 0.0)
         # leg 6: without length it has no direction
         if not (l6 > machine_scale_times_shortest_link):
-            return 1*(None,)
+            return (None,)
         # leg 1: its direction, and the moment of that about the platform's origin
         divisor_1 = l1 if l1 > machine_scale_times_shortest_link else 1.0
         along_1_x = span_1_x/divisor_1
@@ -500,7 +506,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_1 = along_1_x*home_along_1_x + along_1_y*home_along_1_y + along_1_z*home_along_1_z
         # leg 1: its joint on the base bends beyond its cone
         if not (cos_base_lean_1 >= least_cos_base):
-            return 1*(None,)
+            return (None,)
         # leg 2: its direction, and the moment of that about the platform's origin
         divisor_2 = l2 if l2 > machine_scale_times_shortest_link else 1.0
         along_2_x = span_2_x/divisor_2
@@ -509,7 +515,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_2 = along_2_x*home_along_2_x + along_2_y*home_along_2_y + along_2_z*home_along_2_z
         # leg 2: its joint on the base bends beyond its cone
         if not (cos_base_lean_2 >= least_cos_base):
-            return 1*(None,)
+            return (None,)
         # leg 3: its direction, and the moment of that about the platform's origin
         divisor_3 = l3 if l3 > machine_scale_times_shortest_link else 1.0
         along_3_x = span_3_x/divisor_3
@@ -518,7 +524,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_3 = along_3_x*home_along_3_x + along_3_y*home_along_3_y + along_3_z*home_along_3_z
         # leg 3: its joint on the base bends beyond its cone
         if not (cos_base_lean_3 >= least_cos_base):
-            return 1*(None,)
+            return (None,)
         # leg 4: its direction, and the moment of that about the platform's origin
         divisor_4 = l4 if l4 > machine_scale_times_shortest_link else 1.0
         along_4_x = span_4_x/divisor_4
@@ -527,7 +533,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_4 = along_4_x*home_along_4_x + along_4_y*home_along_4_y + along_4_z*home_along_4_z
         # leg 4: its joint on the base bends beyond its cone
         if not (cos_base_lean_4 >= least_cos_base):
-            return 1*(None,)
+            return (None,)
         # leg 5: its direction, and the moment of that about the platform's origin
         divisor_5 = l5 if l5 > machine_scale_times_shortest_link else 1.0
         along_5_x = span_5_x/divisor_5
@@ -536,7 +542,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_5 = along_5_x*home_along_5_x + along_5_y*home_along_5_y + along_5_z*home_along_5_z
         # leg 5: its joint on the base bends beyond its cone
         if not (cos_base_lean_5 >= least_cos_base):
-            return 1*(None,)
+            return (None,)
         # leg 6: its direction, and the moment of that about the platform's origin
         divisor_6 = l6 if l6 > machine_scale_times_shortest_link else 1.0
         along_6_x = span_6_x/divisor_6
@@ -545,111 +551,111 @@ def unrolled(k: Constants) -> Unrolled:
         cos_base_lean_6 = along_6_x*home_along_6_x + along_6_y*home_along_6_y + along_6_z*home_along_6_z
         # leg 6: its joint on the base bends beyond its cone
         if not (cos_base_lean_6 >= least_cos_base):
-            return 1*(None,)
+            return (None,)
         cone_axis_1_x = plate_axis_1_x*r11 + plate_axis_1_y*r12 + plate_axis_1_z*r13
         cone_axis_1_y = plate_axis_1_x*r21 + plate_axis_1_y*r22 + plate_axis_1_z*r23
         cone_axis_1_z = plate_axis_1_x*r31 + plate_axis_1_y*r32 + plate_axis_1_z*r33
         cos_plate_lean_1 = along_1_x*cone_axis_1_x + along_1_y*cone_axis_1_y + along_1_z*cone_axis_1_z
         # leg 1: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_1 >= least_cos_plate):
-            return 1*(None,)
+            return (None,)
         cone_axis_2_x = plate_axis_2_x*r11 + plate_axis_2_y*r12 + plate_axis_2_z*r13
         cone_axis_2_y = plate_axis_2_x*r21 + plate_axis_2_y*r22 + plate_axis_2_z*r23
         cone_axis_2_z = plate_axis_2_x*r31 + plate_axis_2_y*r32 + plate_axis_2_z*r33
         cos_plate_lean_2 = along_2_x*cone_axis_2_x + along_2_y*cone_axis_2_y + along_2_z*cone_axis_2_z
         # leg 2: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_2 >= least_cos_plate):
-            return 1*(None,)
+            return (None,)
         cone_axis_3_x = plate_axis_3_x*r11 + plate_axis_3_y*r12 + plate_axis_3_z*r13
         cone_axis_3_y = plate_axis_3_x*r21 + plate_axis_3_y*r22 + plate_axis_3_z*r23
         cone_axis_3_z = plate_axis_3_x*r31 + plate_axis_3_y*r32 + plate_axis_3_z*r33
         cos_plate_lean_3 = along_3_x*cone_axis_3_x + along_3_y*cone_axis_3_y + along_3_z*cone_axis_3_z
         # leg 3: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_3 >= least_cos_plate):
-            return 1*(None,)
+            return (None,)
         cone_axis_4_x = plate_axis_4_x*r11 + plate_axis_4_y*r12 + plate_axis_4_z*r13
         cone_axis_4_y = plate_axis_4_x*r21 + plate_axis_4_y*r22 + plate_axis_4_z*r23
         cone_axis_4_z = plate_axis_4_x*r31 + plate_axis_4_y*r32 + plate_axis_4_z*r33
         cos_plate_lean_4 = along_4_x*cone_axis_4_x + along_4_y*cone_axis_4_y + along_4_z*cone_axis_4_z
         # leg 4: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_4 >= least_cos_plate):
-            return 1*(None,)
+            return (None,)
         cone_axis_5_x = plate_axis_5_x*r11 + plate_axis_5_y*r12 + plate_axis_5_z*r13
         cone_axis_5_y = plate_axis_5_x*r21 + plate_axis_5_y*r22 + plate_axis_5_z*r23
         cone_axis_5_z = plate_axis_5_x*r31 + plate_axis_5_y*r32 + plate_axis_5_z*r33
         cos_plate_lean_5 = along_5_x*cone_axis_5_x + along_5_y*cone_axis_5_y + along_5_z*cone_axis_5_z
         # leg 5: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_5 >= least_cos_plate):
-            return 1*(None,)
+            return (None,)
         cone_axis_6_x = plate_axis_6_x*r11 + plate_axis_6_y*r12 + plate_axis_6_z*r13
         cone_axis_6_y = plate_axis_6_x*r21 + plate_axis_6_y*r22 + plate_axis_6_z*r23
         cone_axis_6_z = plate_axis_6_x*r31 + plate_axis_6_y*r32 + plate_axis_6_z*r33
         cos_plate_lean_6 = along_6_x*cone_axis_6_x + along_6_y*cone_axis_6_y + along_6_z*cone_axis_6_z
         # leg 6: its joint on the plate bends beyond its cone
         if not (cos_plate_lean_6 >= least_cos_plate):
-            return 1*(None,)
+            return (None,)
         arm_1_y = platform_1_x_times_r21_plus_platform_1_y_times_r22 + platform_1_z_times_r23
         arm_1_z = platform_1_x_times_r31_plus_platform_1_y_times_r32 + platform_1_z_times_r33
-        moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
         arm_1_x = platform_1_x_times_r11_plus_platform_1_y_times_r12 + platform_1_z_times_r13
-        moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-        moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
         arm_2_y = platform_2_x_times_r21_plus_platform_2_y_times_r22 + platform_2_z_times_r23
         arm_2_z = platform_2_x_times_r31_plus_platform_2_y_times_r32 + platform_2_z_times_r33
-        moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
         arm_2_x = platform_2_x_times_r11_plus_platform_2_y_times_r12 + platform_2_z_times_r13
-        moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-        moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
         arm_3_y = platform_3_x_times_r21_plus_platform_3_y_times_r22 + platform_3_z_times_r23
         arm_3_z = platform_3_x_times_r31_plus_platform_3_y_times_r32 + platform_3_z_times_r33
-        moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
         arm_3_x = platform_3_x_times_r11_plus_platform_3_y_times_r12 + platform_3_z_times_r13
-        moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-        moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
         arm_4_y = platform_4_x_times_r21_plus_platform_4_y_times_r22 + platform_4_z_times_r23
         arm_4_z = platform_4_x_times_r31_plus_platform_4_y_times_r32 + platform_4_z_times_r33
-        moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
         arm_4_x = platform_4_x_times_r11_plus_platform_4_y_times_r12 + platform_4_z_times_r13
-        moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-        moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
         arm_5_y = platform_5_x_times_r21_plus_platform_5_y_times_r22 + platform_5_z_times_r23
         arm_5_z = platform_5_x_times_r31_plus_platform_5_y_times_r32 + platform_5_z_times_r33
-        moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
         arm_5_x = platform_5_x_times_r11_plus_platform_5_y_times_r12 + platform_5_z_times_r13
-        moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-        moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
         arm_6_y = platform_6_x_times_r21_plus_platform_6_y_times_r22 + platform_6_z_times_r23
         arm_6_z = platform_6_x_times_r31_plus_platform_6_y_times_r32 + platform_6_z_times_r33
-        moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
         arm_6_x = platform_6_x_times_r11_plus_platform_6_y_times_r12 + platform_6_z_times_r13
-        moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-        moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
         # margin of the platform
         (determinant,) = solve(
             (
-                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+                (
+                    along_1_x, along_1_y, along_1_z, (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius,
+                    (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius,
+                    (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius,
+                ),
+                (
+                    along_2_x, along_2_y, along_2_z, (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius,
+                    (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius,
+                    (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius,
+                ),
+                (
+                    along_3_x, along_3_y, along_3_z, (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius,
+                    (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius,
+                    (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius,
+                ),
+                (
+                    along_4_x, along_4_y, along_4_z, (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius,
+                    (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius,
+                    (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius,
+                ),
+                (
+                    along_5_x, along_5_y, along_5_z, (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius,
+                    (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius,
+                    (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius,
+                ),
+                (
+                    along_6_x, along_6_y, along_6_z, (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius,
+                    (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius,
+                    (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius,
+                ),
             ),
             (),
         )
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign*determinant >= min_type2_margin):
-            return 1*(None,)
-        axis_l1 = l1 + offset_l1
-        axis_l2 = l2 + offset_l2
-        axis_l3 = l3 + offset_l3
-        axis_l4 = l4 + offset_l4
-        axis_l5 = l5 + offset_l5
-        axis_l6 = l6 + offset_l6
+            return (None,)
         return (
-            (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6),
+            (l1 + offset_l1, l2 + offset_l2, l3 + offset_l3, l4 + offset_l4, l5 + offset_l5, l6 + offset_l6),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)) = frame
         span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1
@@ -804,61 +810,61 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         arm_1_y = platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23
         arm_1_z = platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33
-        moment_1_x = (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius
         arm_1_x = platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13
-        moment_1_y = (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius
-        moment_1_z = (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius
         arm_2_y = platform_2_x*r21 + platform_2_y*r22 + platform_2_z*r23
         arm_2_z = platform_2_x*r31 + platform_2_y*r32 + platform_2_z*r33
-        moment_2_x = (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius
         arm_2_x = platform_2_x*r11 + platform_2_y*r12 + platform_2_z*r13
-        moment_2_y = (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius
-        moment_2_z = (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius
         arm_3_y = platform_3_x*r21 + platform_3_y*r22 + platform_3_z*r23
         arm_3_z = platform_3_x*r31 + platform_3_y*r32 + platform_3_z*r33
-        moment_3_x = (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius
         arm_3_x = platform_3_x*r11 + platform_3_y*r12 + platform_3_z*r13
-        moment_3_y = (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius
-        moment_3_z = (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius
         arm_4_y = platform_4_x*r21 + platform_4_y*r22 + platform_4_z*r23
         arm_4_z = platform_4_x*r31 + platform_4_y*r32 + platform_4_z*r33
-        moment_4_x = (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius
         arm_4_x = platform_4_x*r11 + platform_4_y*r12 + platform_4_z*r13
-        moment_4_y = (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius
-        moment_4_z = (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius
         arm_5_y = platform_5_x*r21 + platform_5_y*r22 + platform_5_z*r23
         arm_5_z = platform_5_x*r31 + platform_5_y*r32 + platform_5_z*r33
-        moment_5_x = (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius
         arm_5_x = platform_5_x*r11 + platform_5_y*r12 + platform_5_z*r13
-        moment_5_y = (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius
-        moment_5_z = (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius
         arm_6_y = platform_6_x*r21 + platform_6_y*r22 + platform_6_z*r23
         arm_6_z = platform_6_x*r31 + platform_6_y*r32 + platform_6_z*r33
-        moment_6_x = (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius
         arm_6_x = platform_6_x*r11 + platform_6_y*r12 + platform_6_z*r13
-        moment_6_y = (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius
-        moment_6_z = (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius
         # margin of the platform
         (determinant,) = solve(
             (
-                (along_1_x, along_1_y, along_1_z, moment_1_x, moment_1_y, moment_1_z),
-                (along_2_x, along_2_y, along_2_z, moment_2_x, moment_2_y, moment_2_z),
-                (along_3_x, along_3_y, along_3_z, moment_3_x, moment_3_y, moment_3_z),
-                (along_4_x, along_4_y, along_4_z, moment_4_x, moment_4_y, moment_4_z),
-                (along_5_x, along_5_y, along_5_z, moment_5_x, moment_5_y, moment_5_z),
-                (along_6_x, along_6_y, along_6_z, moment_6_x, moment_6_y, moment_6_z),
+                (
+                    along_1_x, along_1_y, along_1_z, (along_1_z*arm_1_y - along_1_y*arm_1_z)/platform_radius,
+                    (along_1_x*arm_1_z - along_1_z*arm_1_x)/platform_radius,
+                    (along_1_y*arm_1_x - along_1_x*arm_1_y)/platform_radius,
+                ),
+                (
+                    along_2_x, along_2_y, along_2_z, (along_2_z*arm_2_y - along_2_y*arm_2_z)/platform_radius,
+                    (along_2_x*arm_2_z - along_2_z*arm_2_x)/platform_radius,
+                    (along_2_y*arm_2_x - along_2_x*arm_2_y)/platform_radius,
+                ),
+                (
+                    along_3_x, along_3_y, along_3_z, (along_3_z*arm_3_y - along_3_y*arm_3_z)/platform_radius,
+                    (along_3_x*arm_3_z - along_3_z*arm_3_x)/platform_radius,
+                    (along_3_y*arm_3_x - along_3_x*arm_3_y)/platform_radius,
+                ),
+                (
+                    along_4_x, along_4_y, along_4_z, (along_4_z*arm_4_y - along_4_y*arm_4_z)/platform_radius,
+                    (along_4_x*arm_4_z - along_4_z*arm_4_x)/platform_radius,
+                    (along_4_y*arm_4_x - along_4_x*arm_4_y)/platform_radius,
+                ),
+                (
+                    along_5_x, along_5_y, along_5_z, (along_5_z*arm_5_y - along_5_y*arm_5_z)/platform_radius,
+                    (along_5_x*arm_5_z - along_5_z*arm_5_x)/platform_radius,
+                    (along_5_y*arm_5_x - along_5_x*arm_5_y)/platform_radius,
+                ),
+                (
+                    along_6_x, along_6_y, along_6_z, (along_6_z*arm_6_y - along_6_y*arm_6_z)/platform_radius,
+                    (along_6_x*arm_6_z - along_6_z*arm_6_x)/platform_radius,
+                    (along_6_y*arm_6_x - along_6_x*arm_6_y)/platform_radius,
+                ),
             ),
             (),
         )
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign*determinant >= min_type2_margin):
             return None
-        axis_l1 = l1 + offset_l1
-        axis_l2 = l2 + offset_l2
-        axis_l3 = l3 + offset_l3
-        axis_l4 = l4 + offset_l4
-        axis_l5 = l5 + offset_l5
-        axis_l6 = l6 + offset_l6
-        return (axis_l1, axis_l2, axis_l3, axis_l4, axis_l5, axis_l6)
+        return (l1 + offset_l1, l2 + offset_l2, l3 + offset_l3, l4 + offset_l4, l5 + offset_l5, l6 + offset_l6)
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.kin_5axes import Constants
 
 
@@ -67,13 +67,11 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
             return 2*(3.0,)
-        wrist_y = y - r23*tool_length_times_tool_side
-        axis_y = offset_y + wrist_y
+        axis_y = offset_y + (y - r23*tool_length_times_tool_side)
         # limits of Y
         if not (axis_y >= lowest_y and axis_y <= highest_y):
             return 2*(3.0,)
-        wrist_z = z - r33*tool_length_times_tool_side
-        axis_z = offset_z + wrist_z
+        axis_z = offset_z + (z - r33*tool_length_times_tool_side)
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return 2*(3.0,)
@@ -141,16 +139,14 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
-        _, _, _, ref_a, _ = reference
+        _, _, _, ref_a, _ = 5*(0.0,) if reference is None else reference
         wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
-        wrist_y = y - r23*tool_length_times_tool_side
-        axis_y = offset_y + wrist_y
-        wrist_z = z - r33*tool_length_times_tool_side
-        axis_z = offset_z + wrist_z
+        axis_y = offset_y + (y - r23*tool_length_times_tool_side)
+        axis_z = offset_z + (z - r33*tool_length_times_tool_side)
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
@@ -167,29 +163,23 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
         axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive)*RADIAN
-        axis_b_positive = offset_b + arctan2(radius_a, r33)*RADIAN
+        axis_b = offset_b + arctan2(radius_a, r33)*RADIAN
         direction_of_axis_a = (
             180.0 + axis_a
             if radius_a > 1e-11
             else offset_a + arctan2(direction_y_a_negative, direction_x_a_negative)*RADIAN
         )
-        axis_b_negative = offset_b_times_2 - axis_b_positive
         return (
-            (axis_x, axis_y, axis_z, axis_a, axis_b_positive),
-            (axis_x, axis_y, axis_z, direction_of_axis_a, axis_b_negative),
+            (axis_x, axis_y, axis_z, axis_a, axis_b),
+            (axis_x, axis_y, axis_z, direction_of_axis_a, offset_b_times_2 - axis_b),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_roll,) = signs
-        _, _, _, ref_a, _ = reference
+        _, _, _, ref_a, _ = 5*(0.0,) if reference is None else reference
         wrist_x = x - r13*tool_length_times_tool_side  # the point that the last joints turn about
-        axis_x = offset_x + wrist_x
-        wrist_y = y - r23*tool_length_times_tool_side
-        axis_y = offset_y + wrist_y
-        wrist_z = z - r33*tool_length_times_tool_side
-        axis_z = offset_z + wrist_z
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
@@ -201,9 +191,12 @@ def unrolled(k: Constants) -> Unrolled:
             free_a = (ref_a - offset_a)*DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
-        axis_a = offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN
-        a_radius_of_b = radius_a*sigma_roll
-        axis_b = offset_b + arctan2(a_radius_of_b, r33)*RADIAN
-        return (axis_x, axis_y, axis_z, axis_a, axis_b)
+        return (
+            offset_x + wrist_x,
+            offset_y + (y - r23*tool_length_times_tool_side),
+            offset_z + (z - r33*tool_length_times_tool_side),
+            offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN,
+            offset_b + arctan2(radius_a*sigma_roll, r33)*RADIAN,
+        )
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, root, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.mc_kin_type_12_xy import Constants
 
 
@@ -112,17 +112,20 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a1 + link_length_1_plus_link_length_2)*(divisor_a1 - link_length_1_minus_link_length_2)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return 4*(3.0,)
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
-        sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
+        if sine_square_a1 > 0.0:
+            minus_sin_swing_a1 = sqrt(sine_square_a1)
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return 4*(3.0,)
+            minus_sin_swing_a1 = 0.0
+        minus_sin_swing_a1_times_span_upper_y_by_divisor_a1 = minus_sin_swing_a1*span_upper_y/divisor_a1
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
-        sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - minus_sin_swing_a1_times_span_upper_y_by_divisor_a1
+        minus_sin_swing_a1_times_span_upper_x_by_divisor_a1 = minus_sin_swing_a1*span_upper_x/divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + minus_sin_swing_a1_times_span_upper_x_by_divisor_a1
         part_of_span_rear_x = constant_part_3*x - constant_part_3*y
         span_rear_x = part_of_span_rear_x - link_length_3_by_link_length_2*x  # rod rear
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
@@ -144,12 +147,11 @@ def unrolled(k: Constants) -> Unrolled:
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
-        link_length_4_squared_minus_span_rear_x_squared = link_length_4_squared - span_rear_x*span_rear_x
-        part_of_cos_swing_a2 = link_length_1_squared - link_length_4_squared_minus_span_rear_x_squared
-        link_length_5_squared_plus_part_of_cos_swing_a2 = link_length_5_squared + part_of_cos_swing_a2
-        part_of_cos_swing_a2_left_left_2 = link_length_5_squared_plus_part_of_cos_swing_a2 + span_rear_y*span_rear_y
-        part_of_cos_swing_a2_left_left_3 = constant_part_4 + part_of_cos_swing_a2_left_left_2
-        part_of_cos_swing_a2_left_left_4 = constant_part_5 + part_of_cos_swing_a2_left_left_3
+        part_of_cos_swing_a2_left_left_2 = (
+            link_length_5_squared + (link_length_1_squared - (link_length_4_squared - span_rear_x*span_rear_x))
+            + span_rear_y*span_rear_y
+        )
+        part_of_cos_swing_a2_left_left_4 = constant_part_5 + (constant_part_4 + part_of_cos_swing_a2_left_left_2)
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_swing_a2 = (
             (
@@ -160,14 +162,16 @@ def unrolled(k: Constants) -> Unrolled:
             /swing_scale_a2
         )
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        part_of_sine_square_a2 = constant_part_7 + link_length_2_squared*span_rear_x*span_rear_x
-        part_of_sine_square_a2_left_left_2 = constant_part_8 + part_of_sine_square_a2
-        part_of_sine_square_a2_left_left_3 = constant_part_9 + part_of_sine_square_a2_left_left_2
-        part_of_sine_square_a2_left_left_4 = (
-            part_of_sine_square_a2_left_left_3 + link_length_2_squared*span_rear_y*span_rear_y
+        part_of_sine_square_a2_left_left_3 = (
+            constant_part_9 + (constant_part_8 + (constant_part_7 + link_length_2_squared*span_rear_x*span_rear_x))
         )
-        part_of_sine_square_a2_left_left_5 = constant_part_10 - part_of_sine_square_a2_left_left_4
-        part_of_sine_square_a2_left_left_6 = constant_part_11 - part_of_sine_square_a2_left_left_5
+        part_of_sine_square_a2_left_left_6 = (
+            constant_part_11
+            - (
+                constant_part_10
+                - (part_of_sine_square_a2_left_left_3 + link_length_2_squared*span_rear_y*span_rear_y)
+            )
+        )
         # kept as a product
         sine_square_a2 = (
             (
@@ -182,16 +186,12 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(constant_part_15*swing_scale_a2*swing_scale_a2)
         )
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
-        cos_a2_left = (
-            across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
-        )
-        along_a2_times_sin_swing_a2_by_divisor_a2_left_right = along_a2*sin_swing_a2/divisor_a2
+        minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        across_a2_times_minus_sin_swing_a2_by_divisor_a2 = across_a2*minus_sin_swing_a2/divisor_a2
+        cos_a2_left = across_a2_times_minus_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
+        along_a2_times_minus_sin_swing_a2_by_divisor_a2 = along_a2*minus_sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_left = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
-        )
+        sin_a2_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_minus_sin_swing_a2_by_divisor_a2
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_left - open_a2 < 179.999999999:
@@ -200,45 +200,39 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        cos_a2_right = (
-            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
-        )
-        sin_a2_right = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
-        )
+        cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_minus_sin_swing_a2_by_divisor_a2
+        sin_a2_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_minus_sin_swing_a2_by_divisor_a2
         axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_right - open_a2 < 179.999999999:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
         if sine_square_a2 >= -1e-12 and axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link:
-            pivot_upper_x = -link_length_1*sin_a1  # rod upper
-            pivot_upper_y = -link_length_1*cos_a1  # rod upper
+            minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
+            minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
             part_of_pivot_rear_x = constant_part_2*sin_a1 + link_length_1*sin_a1
             pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
             part_of_pivot_rear_y = constant_part_2*cos_a1 + link_length_1*cos_a1
             pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
-            part_of_centre_1_x = pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-            centre_1_x = pivot_upper_x - part_of_centre_1_x
-            rod_1_x = x - centre_1_x
-            centre_1_y = part_of_centre_1_x + pivot_upper_y
-            rod_1_y = y - centre_1_y
+            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
+            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
+            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_centre_2_x = (
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
-            centre_2_x_left = (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3
-            rod_2_x_left = x - centre_2_x_left
-            centre_2_y_left = (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3
-            rod_2_y_left = y - centre_2_y_left
             type2_arms_aligned_left = (
-                constant_part_16*(rod_1_x*rod_2_y_left - rod_1_y*rod_2_x_left)
+                constant_part_16
+                *(
+                    (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3)*rod_1_x
+                    - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3)*rod_1_y
+                )
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
-                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
-                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
-                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
-                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
-                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
+                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
+                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
+                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
+                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
                     )
                     *root(
                         link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
@@ -262,20 +256,20 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_centre_2_x_left_right = (
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
-            centre_2_x_right = (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3
-            rod_2_x_right = x - centre_2_x_right
-            centre_2_y_right = (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3
-            rod_2_y_right = y - centre_2_y_right
             type2_arms_aligned_right = (
-                constant_part_16*(rod_1_x*rod_2_y_right - rod_1_y*rod_2_x_right)
+                constant_part_16
+                *(
+                    (y - (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
+                    - (x - (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
+                )
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
-                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
-                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
-                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
-                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
-                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
+                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
+                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
+                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
+                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
                     )
                     *root(
                         link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
@@ -297,8 +291,8 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_left_left = 3.0
             refusal_left_right = 3.0
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + minus_sin_swing_a1_times_span_upper_y_by_divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - minus_sin_swing_a1_times_span_upper_x_by_divisor_a1
         along_a2 = (
             (
                 link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
@@ -339,56 +333,63 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(constant_part_15*swing_scale_a2*swing_scale_a2)
         )
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
-        cos_a2_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
+        minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right = across_a2*minus_sin_swing_a2/divisor_a2
+        cos_a2_left = (
+            across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
+        )
+        along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right = along_a2*minus_sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
+        sin_a2_left = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
+        )
         axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_left - open_a2 < 179.999999999:
             axis_a2_right_left = nearest_period(axis_a2_right_left, open_a2)
         axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
-        sin_a2_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
+        cos_a2_right = (
+            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
+        )
+        sin_a2_right = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
+        )
         axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_right - open_a2 < 179.999999999:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
         if sine_square_a2 >= -1e-12 and axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link:
-            pivot_upper_x = -link_length_1*sin_a1  # rod upper
-            pivot_upper_y = -link_length_1*cos_a1  # rod upper
+            minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
+            minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
             part_of_pivot_rear_x_left_right = constant_part_2*sin_a1 + link_length_1*sin_a1
             pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_left  # rod rear
             part_of_pivot_rear_y_left_right = constant_part_2*cos_a1 + link_length_1*cos_a1
             pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
-            part_of_centre_1_x = pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-            centre_1_x = pivot_upper_x - part_of_centre_1_x
-            rod_1_x = x - centre_1_x
-            centre_1_y = part_of_centre_1_x + pivot_upper_y
-            rod_1_y = y - centre_1_y
+            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
+            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
+            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_centre_2_x_left_right_left_right_2 = (
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
-            centre_2_x_left = (part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_x_left)/link_length_3
-            rod_2_x_left = x - centre_2_x_left
-            centre_2_y_left = (
-                (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)
-                /link_length_3
-            )
-            rod_2_y_left = y - centre_2_y_left
             type2_arms_aligned_left = (
-                constant_part_16*(rod_1_x*rod_2_y_left - rod_1_y*rod_2_x_left)
+                constant_part_16
+                *(
+                    (
+                        y - (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)/link_length_3
+                    )*rod_1_x
+                    - (
+                        x - (part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_x_left)/link_length_3
+                    )*rod_1_y
+                )
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
-                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
-                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
-                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
-                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
-                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
+                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
+                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
+                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
+                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
                     )
                     *root(
                         link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
@@ -412,20 +413,20 @@ def unrolled(k: Constants) -> Unrolled:
             part_of_centre_2_x = (
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
-            centre_2_x_right = (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3
-            rod_2_x_right = x - centre_2_x_right
-            centre_2_y_right = (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3
-            rod_2_y_right = y - centre_2_y_right
             type2_arms_aligned_right = (
-                constant_part_16*(rod_1_x*rod_2_y_right - rod_1_y*rod_2_x_right)
+                constant_part_16
+                *(
+                    (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
+                    - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
+                )
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
-                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
-                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
-                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
-                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
-                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
+                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
+                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
+                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
+                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
                     )
                     *root(
                         link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
@@ -454,7 +455,7 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_right, axis_a2_right_right) if refusal_right_right == 0.0 else refusal_right_right),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
@@ -476,17 +477,20 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a1 + link_length_1_plus_link_length_2)*(divisor_a1 - link_length_1_minus_link_length_2)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return 4*(None,)
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
-        sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
+        if sine_square_a1 > 0.0:
+            minus_sin_swing_a1 = sqrt(sine_square_a1)
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return 4*(None,)
+            minus_sin_swing_a1 = 0.0
+        minus_sin_swing_a1_times_span_upper_y_by_divisor_a1 = minus_sin_swing_a1*span_upper_y/divisor_a1
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
-        sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - minus_sin_swing_a1_times_span_upper_y_by_divisor_a1
+        minus_sin_swing_a1_times_span_upper_x_by_divisor_a1 = minus_sin_swing_a1*span_upper_x/divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + minus_sin_swing_a1_times_span_upper_x_by_divisor_a1
         part_of_span_rear_x = constant_part_3*x - constant_part_3*y
         span_rear_x = part_of_span_rear_x - link_length_3_by_link_length_2*x  # rod rear
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
@@ -508,12 +512,11 @@ def unrolled(k: Constants) -> Unrolled:
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
-        link_length_4_squared_minus_span_rear_x_squared = link_length_4_squared - span_rear_x*span_rear_x
-        part_of_cos_swing_a2 = link_length_1_squared - link_length_4_squared_minus_span_rear_x_squared
-        link_length_5_squared_plus_part_of_cos_swing_a2 = link_length_5_squared + part_of_cos_swing_a2
-        part_of_cos_swing_a2_left_left_2 = link_length_5_squared_plus_part_of_cos_swing_a2 + span_rear_y*span_rear_y
-        part_of_cos_swing_a2_left_left_3 = constant_part_4 + part_of_cos_swing_a2_left_left_2
-        part_of_cos_swing_a2_left_left_4 = constant_part_5 + part_of_cos_swing_a2_left_left_3
+        part_of_cos_swing_a2_left_left_2 = (
+            link_length_5_squared + (link_length_1_squared - (link_length_4_squared - span_rear_x*span_rear_x))
+            + span_rear_y*span_rear_y
+        )
+        part_of_cos_swing_a2_left_left_4 = constant_part_5 + (constant_part_4 + part_of_cos_swing_a2_left_left_2)
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_swing_a2 = (
             (
@@ -524,14 +527,16 @@ def unrolled(k: Constants) -> Unrolled:
             /swing_scale_a2
         )
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        part_of_sine_square_a2 = constant_part_7 + link_length_2_squared*span_rear_x*span_rear_x
-        part_of_sine_square_a2_left_left_2 = constant_part_8 + part_of_sine_square_a2
-        part_of_sine_square_a2_left_left_3 = constant_part_9 + part_of_sine_square_a2_left_left_2
-        part_of_sine_square_a2_left_left_4 = (
-            part_of_sine_square_a2_left_left_3 + link_length_2_squared*span_rear_y*span_rear_y
+        part_of_sine_square_a2_left_left_3 = (
+            constant_part_9 + (constant_part_8 + (constant_part_7 + link_length_2_squared*span_rear_x*span_rear_x))
         )
-        part_of_sine_square_a2_left_left_5 = constant_part_10 - part_of_sine_square_a2_left_left_4
-        part_of_sine_square_a2_left_left_6 = constant_part_11 - part_of_sine_square_a2_left_left_5
+        part_of_sine_square_a2_left_left_6 = (
+            constant_part_11
+            - (
+                constant_part_10
+                - (part_of_sine_square_a2_left_left_3 + link_length_2_squared*span_rear_y*span_rear_y)
+            )
+        )
         # kept as a product
         sine_square_a2 = (
             (
@@ -546,52 +551,50 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(constant_part_15*swing_scale_a2*swing_scale_a2)
         )
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
-        cos_a2_left = (
-            across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
+        minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        across_a2_times_minus_sin_swing_a2_by_divisor_a2 = across_a2*minus_sin_swing_a2/divisor_a2
+        cos_a2_left_left = (
+            across_a2_times_minus_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
         )
-        along_a2_times_sin_swing_a2_by_divisor_a2_left_right = along_a2*sin_swing_a2/divisor_a2
+        along_a2_times_minus_sin_swing_a2_by_divisor_a2 = along_a2*minus_sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_left = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
+        sin_a2_left_left = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_minus_sin_swing_a2_by_divisor_a2
         )
-        cos_a2_right = (
-            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
+        cos_a2_left_right = (
+            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_minus_sin_swing_a2_by_divisor_a2
         )
-        sin_a2_right = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
+        sin_a2_left_right = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_minus_sin_swing_a2_by_divisor_a2
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if sine_square_a2 >= -1e-12 and effective_a2 > link_length_5_times_shortest_link:
-            pivot_upper_x = -link_length_1*sin_a1  # rod upper
-            pivot_upper_y = -link_length_1*cos_a1  # rod upper
+            minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
+            minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
             part_of_pivot_rear_x = constant_part_2*sin_a1 + link_length_1*sin_a1
-            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
+            pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left_left  # rod rear
             part_of_pivot_rear_y = constant_part_2*cos_a1 + link_length_1*cos_a1
-            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
-            part_of_centre_1_x = pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-            centre_1_x = pivot_upper_x - part_of_centre_1_x
-            rod_1_x = x - centre_1_x
-            centre_1_y = part_of_centre_1_x + pivot_upper_y
-            rod_1_y = y - centre_1_y
+            pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left_left  # rod rear
+            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
+            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
+            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_centre_2_x = (
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
-            centre_2_x_left = (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3
-            rod_2_x_left = x - centre_2_x_left
-            centre_2_y_left = (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3
-            rod_2_y_left = y - centre_2_y_left
             type2_arms_aligned_left = (
-                constant_part_16*(rod_1_x*rod_2_y_left - rod_1_y*rod_2_x_left)
+                constant_part_16
+                *(
+                    (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3)*rod_1_x
+                    - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3)*rod_1_y
+                )
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
-                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
-                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
-                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
-                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
-                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
+                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
+                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
+                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
+                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
                     )
                     *root(
                         link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
@@ -604,25 +607,25 @@ def unrolled(k: Constants) -> Unrolled:
                 )
             )
             refusal_left_left = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
-            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_right  # rod rear
+            pivot_rear_x_right = part_of_pivot_rear_x - link_length_5*cos_a2_left_right  # rod rear
+            pivot_rear_y_right = part_of_pivot_rear_y + link_length_5*sin_a2_left_right  # rod rear
             part_of_centre_2_x_left_right = (
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
-            centre_2_x_right = (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3
-            rod_2_x_right = x - centre_2_x_right
-            centre_2_y_right = (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3
-            rod_2_y_right = y - centre_2_y_right
             type2_arms_aligned_right = (
-                constant_part_16*(rod_1_x*rod_2_y_right - rod_1_y*rod_2_x_right)
+                constant_part_16
+                *(
+                    (y - (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
+                    - (x - (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
+                )
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
-                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
-                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
-                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
-                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
-                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
+                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
+                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
+                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
+                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
                     )
                     *root(
                         link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
@@ -639,10 +642,8 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_left = 3.0
             refusal_left_right = 3.0
         axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
-        axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)*RADIAN
-        axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)*RADIAN
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + minus_sin_swing_a1_times_span_upper_y_by_divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - minus_sin_swing_a1_times_span_upper_x_by_divisor_a1
         along_a2 = (
             (
                 link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
@@ -683,47 +684,54 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(constant_part_15*swing_scale_a2*swing_scale_a2)
         )
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
-        cos_a2_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
+        minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right = across_a2*minus_sin_swing_a2/divisor_a2
+        cos_a2_right_left = (
+            across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
+        )
+        along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right = along_a2*minus_sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
-        cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
-        sin_a2_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
+        sin_a2_right_left = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
+        )
+        cos_a2_right_right = (
+            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
+        )
+        sin_a2_right_right = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if sine_square_a2 >= -1e-12 and effective_a2 > link_length_5_times_shortest_link:
-            pivot_upper_x = -link_length_1*sin_a1  # rod upper
-            pivot_upper_y = -link_length_1*cos_a1  # rod upper
+            minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
+            minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
             part_of_pivot_rear_x_left_right = constant_part_2*sin_a1 + link_length_1*sin_a1
-            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_left  # rod rear
+            pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_left  # rod rear
             part_of_pivot_rear_y_left_right = constant_part_2*cos_a1 + link_length_1*cos_a1
-            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
-            part_of_centre_1_x = pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-            centre_1_x = pivot_upper_x - part_of_centre_1_x
-            rod_1_x = x - centre_1_x
-            centre_1_y = part_of_centre_1_x + pivot_upper_y
-            rod_1_y = y - centre_1_y
+            pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_left  # rod rear
+            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
+            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
+            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_centre_2_x_left_right_left_right_2 = (
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
-            centre_2_x_left = (part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_x_left)/link_length_3
-            rod_2_x_left = x - centre_2_x_left
-            centre_2_y_left = (
-                (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)
-                /link_length_3
-            )
-            rod_2_y_left = y - centre_2_y_left
             type2_arms_aligned_left = (
-                constant_part_16*(rod_1_x*rod_2_y_left - rod_1_y*rod_2_x_left)
+                constant_part_16
+                *(
+                    (
+                        y - (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)/link_length_3
+                    )*rod_1_x
+                    - (
+                        x - (part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_x_left)/link_length_3
+                    )*rod_1_y
+                )
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
-                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
-                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
-                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
-                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
-                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
+                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
+                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
+                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
+                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
                     )
                     *root(
                         link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
@@ -736,25 +744,25 @@ def unrolled(k: Constants) -> Unrolled:
                 )
             )
             refusal_right_left = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
-            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right  # rod rear
-            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right  # rod rear
+            pivot_rear_x_right = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_right  # rod rear
+            pivot_rear_y_right = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_right  # rod rear
             part_of_centre_2_x = (
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
-            centre_2_x_right = (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3
-            rod_2_x_right = x - centre_2_x_right
-            centre_2_y_right = (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3
-            rod_2_y_right = y - centre_2_y_right
             type2_arms_aligned_right = (
-                constant_part_16*(rod_1_x*rod_2_y_right - rod_1_y*rod_2_x_right)
+                constant_part_16
+                *(
+                    (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
+                    - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
+                )
                 /(
                     root(
-                        link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
-                        + pivot_upper_x*pivot_upper_y*swap_xy_times_4
-                        + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
-                        - pivot_upper_x*pivot_upper_x*swap_xy_times_2
-                        - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
-                        - pivot_upper_y*pivot_upper_y*swap_xy_times_2
+                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
+                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
+                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
+                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
+                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
                     )
                     *root(
                         link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
@@ -771,16 +779,30 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_right_left = 3.0
             refusal_right_right = 3.0
         axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
-        axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left)*RADIAN
-        axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right)*RADIAN
         return (
-            ((axis_a1_left, axis_a2_left_left) if refusal_left_left == 0.0 else None),
-            ((axis_a1_right, axis_a2_right_left) if refusal_right_left == 0.0 else None),
-            ((axis_a1_left, axis_a2_left_right) if refusal_left_right == 0.0 else None),
-            ((axis_a1_right, axis_a2_right_right) if refusal_right_right == 0.0 else None),
+            (
+                (axis_a1_left, offset_a2 + arctan2(sin_a2_left_left, cos_a2_left_left)*RADIAN)
+                if refusal_left_left == 0.0
+                else None
+            ),
+            (
+                (axis_a1_right, offset_a2 + arctan2(sin_a2_right_left, cos_a2_right_left)*RADIAN)
+                if refusal_right_left == 0.0
+                else None
+            ),
+            (
+                (axis_a1_left, offset_a2 + arctan2(sin_a2_left_right, cos_a2_left_right)*RADIAN)
+                if refusal_left_right == 0.0
+                else None
+            ),
+            (
+                (axis_a1_right, offset_a2 + arctan2(sin_a2_right_right, cos_a2_right_right)*RADIAN)
+                if refusal_right_right == 0.0
+                else None
+            ),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_t, sigma_w = signs
@@ -802,12 +824,15 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a1 + link_length_1_plus_link_length_2)*(divisor_a1 - link_length_1_minus_link_length_2)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return None
+        if sine_square_a1 > 0.0:
+            minus_sin_swing_a1 = sqrt(sine_square_a1)*sigma_t
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return None
+            minus_sin_swing_a1 = 0.0
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
-        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t
-        sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
+        sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 - minus_sin_swing_a1*span_upper_y/divisor_a1
         span_rear_x = constant_part_3*x - constant_part_3*y - link_length_3_by_link_length_2*x  # rod rear
         along_a2 = (
             (
@@ -816,7 +841,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
+        cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 + minus_sin_swing_a1*span_upper_x/divisor_a1
         span_rear_y = constant_part_3*y - constant_part_3*x - link_length_3_by_link_length_2*y  # rod rear
         across_a2 = (
             (
@@ -847,11 +872,15 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(constant_part_15*swing_scale_a2*swing_scale_a2)
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return None
-        pivot_upper_x = -link_length_1*sin_a1  # rod upper
-        pivot_upper_y = -link_length_1*cos_a1  # rod upper
+        if sine_square_a2 > 0.0:
+            minus_sin_swing_a2 = sqrt(sine_square_a2)*sigma_w
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return None
+            minus_sin_swing_a2 = 0.0
+        minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
+        minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
         cos_swing_a2 = (
             (
                 constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
@@ -860,15 +889,12 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /swing_scale_a2
         )
-        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w
-        cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
+        cos_a2 = across_a2*minus_sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         pivot_rear_x = constant_part_2*sin_a1 + link_length_1*sin_a1 - link_length_5*cos_a2  # rod rear
-        sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
+        sin_a2 = across_a2*cos_swing_a2/divisor_a2 - along_a2*minus_sin_swing_a2/divisor_a2
         pivot_rear_y = constant_part_2*cos_a1 + link_length_1*cos_a1 + link_length_5*sin_a2  # rod rear
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
-        rod_1_x = x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-        rod_1_y = y - centre_1_y
+        rod_1_x = x - (minus_pivot_upper_x*swap_xy - minus_pivot_upper_x - minus_pivot_upper_y*swap_xy)
+        rod_1_y = y - (minus_pivot_upper_y*swap_xy - minus_pivot_upper_y - minus_pivot_upper_x*swap_xy)
         centre_2_x = (
             (
                 link_length_2_times_swap_xy*pivot_rear_x - link_length_2*pivot_rear_x
@@ -876,7 +902,6 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_3
         )
-        rod_2_x = x - centre_2_x
         centre_2_y = (
             (
                 link_length_2_times_swap_xy*pivot_rear_y - link_length_2*pivot_rear_y
@@ -884,17 +909,16 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_3
         )
-        rod_2_y = y - centre_2_y
         type2_arms_aligned = (
-            constant_part_16*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+            constant_part_16*((y - centre_2_y)*rod_1_x - (x - centre_2_x)*rod_1_y)
             /(
                 root(
-                    link_length_2_squared + pivot_upper_x*pivot_upper_x*swap_xy_squared_times_2
-                    + pivot_upper_x*pivot_upper_y*swap_xy_times_4
-                    + pivot_upper_y*pivot_upper_y*swap_xy_squared_times_2
-                    - pivot_upper_x*pivot_upper_x*swap_xy_times_2
-                    - pivot_upper_x*pivot_upper_y*swap_xy_squared_times_4
-                    - pivot_upper_y*pivot_upper_y*swap_xy_times_2
+                    link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
+                    + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
+                    + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
+                    - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
+                    - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
+                    - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
                 )
                 *root(
                     link_length_4_squared + pivot_rear_x*pivot_rear_x*swap_xy_squared_times_2
@@ -907,8 +931,6 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
-        return (axis_a1, axis_a2)
+        return (offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN)
 
     return Unrolled(every_branch, branches, branch)

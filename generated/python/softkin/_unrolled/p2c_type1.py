@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.p2c_type1 import Constants
 
 
@@ -67,9 +67,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a1 + inner_arm_plus_outer_arm)*(divisor_a1 - inner_arm_minus_outer_arm)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return 4*(3.0,)
+        if sine_square_a1 > 0.0:
+            sin_swing_a1 = sqrt(sine_square_a1)
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return 4*(3.0,)
+            sin_swing_a1 = 0.0
         span_2_x = x - displacement_minus_tcp_displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
@@ -83,10 +87,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a2 + inner_arm_plus_outer_arm)*(divisor_a2 - inner_arm_minus_outer_arm)
             /(swing_scale_a2*swing_scale_a2)
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 4*(3.0,)
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        if sine_square_a2 > 0.0:
+            sin_swing_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 4*(3.0,)
+            sin_swing_a2 = 0.0
         sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
@@ -94,7 +101,6 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
         cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
@@ -104,8 +110,8 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*sin_swing_a2/divisor_a2
         cos_swing_a2_times_y_by_divisor_a2 = y*cos_swing_a2/divisor_a2
         sin_a2 = -cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        rod_2_y_outward = y - pivot_2_y
+        minus_pivot_2_y = inner_arm*sin_a2  # rod 2
+        rod_2_y_outward = minus_pivot_2_y + y
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_outward - open_a2 < 179.999999999:
@@ -118,16 +124,16 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
         rod_2_x_inward = x - pivot_2_x
         sin_a2 = sin_swing_a2_times_span_2_x_by_divisor_a2 - cos_swing_a2_times_y_by_divisor_a2
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        rod_2_y_inward = y - pivot_2_y
+        minus_pivot_2_y = inner_arm*sin_a2  # rod 2
+        rod_2_y_inward = minus_pivot_2_y + y
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
             pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
             rod_1_x = x - pivot_1_x
-            pivot_1_y = -inner_arm*sin_a1  # rod 1
-            rod_1_y = y - pivot_1_y
+            minus_pivot_1_y = inner_arm*sin_a1  # rod 1
+            rod_1_y = minus_pivot_1_y + y
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 type2_arms_aligned_outward = (
@@ -155,8 +161,8 @@ def unrolled(k: Constants) -> Unrolled:
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
             pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
             rod_1_x = x - pivot_1_x
-            pivot_1_y = -inner_arm*sin_a1  # rod 1
-            rod_1_y = y - pivot_1_y
+            minus_pivot_1_y = inner_arm*sin_a1  # rod 1
+            rod_1_y = minus_pivot_1_y + y
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 type2_arms_aligned_outward = (
@@ -183,7 +189,7 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_inward, axis_a2_inward) if refusal_inward_inward_2 == 0.0 else refusal_inward_inward_2),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
@@ -202,9 +208,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a1 + inner_arm_plus_outer_arm)*(divisor_a1 - inner_arm_minus_outer_arm)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return 4*(None,)
+        if sine_square_a1 > 0.0:
+            sin_swing_a1 = sqrt(sine_square_a1)
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return 4*(None,)
+            sin_swing_a1 = 0.0
         span_2_x = x - displacement_minus_tcp_displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
@@ -218,10 +228,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a2 + inner_arm_plus_outer_arm)*(divisor_a2 - inner_arm_minus_outer_arm)
             /(swing_scale_a2*swing_scale_a2)
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 4*(None,)
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
+        if sine_square_a2 > 0.0:
+            sin_swing_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 4*(None,)
+            sin_swing_a2 = 0.0
         sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
@@ -231,9 +244,8 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
-        rod_1_y = y - pivot_1_y
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
+        minus_pivot_1_y = inner_arm*sin_a1  # rod 1
+        rod_1_y = minus_pivot_1_y + y
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
         cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
@@ -243,8 +255,8 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*sin_swing_a2/divisor_a2
         cos_swing_a2_times_y_by_divisor_a2 = y*cos_swing_a2/divisor_a2
         sin_a2 = -cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        rod_2_y_outward = y - pivot_2_y
+        minus_pivot_2_y = inner_arm*sin_a2  # rod 2
+        rod_2_y_outward = minus_pivot_2_y + y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_outward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
@@ -254,8 +266,8 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
         rod_2_x_inward = x - pivot_2_x
         sin_a2 = sin_swing_a2_times_span_2_x_by_divisor_a2 - cos_swing_a2_times_y_by_divisor_a2
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        rod_2_y_inward = y - pivot_2_y
+        minus_pivot_2_y = inner_arm*sin_a2  # rod 2
+        rod_2_y_inward = minus_pivot_2_y + y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_inward - rod_1_y*rod_2_x_inward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_outward_inward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
@@ -264,8 +276,8 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
-        rod_1_y = y - pivot_1_y
+        minus_pivot_1_y = inner_arm*sin_a1  # rod 1
+        rod_1_y = minus_pivot_1_y + y
         type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y_outward - rod_1_y*rod_2_x_outward)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_inward_outward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
@@ -280,7 +292,7 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_inward, axis_a2_inward) if refusal_inward_inward == 0.0 else None),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2 = signs
@@ -300,9 +312,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a1 + inner_arm_plus_outer_arm)*(divisor_a1 - inner_arm_minus_outer_arm)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return None
+        if sine_square_a1 > 0.0:
+            sin_swing_a1 = sqrt(sine_square_a1)*sigma_knee_1
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return None
+            sin_swing_a1 = 0.0
         span_2_x = x - displacement_minus_tcp_displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
@@ -316,31 +332,30 @@ def unrolled(k: Constants) -> Unrolled:
             *(divisor_a2 + inner_arm_plus_outer_arm)*(divisor_a2 - inner_arm_minus_outer_arm)
             /(swing_scale_a2*swing_scale_a2)
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return None
+        if sine_square_a2 > 0.0:
+            sin_swing_a2 = -sqrt(sine_square_a2)*sigma_knee_2
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return None
+            sin_swing_a2 = 0.0
         cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
         pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
-        rod_1_x = x - pivot_1_x
         sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
-        pivot_1_y = -inner_arm*sin_a1  # rod 1
-        rod_1_y = y - pivot_1_y
+        minus_pivot_1_y = inner_arm*sin_a1  # rod 1
         cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
-        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
-        rod_2_x = x - pivot_2_x
         sin_a2 = span_2_x*sin_swing_a2/divisor_a2 - y*cos_swing_a2/divisor_a2
-        pivot_2_y = -inner_arm*sin_a2  # rod 2
-        rod_2_y = y - pivot_2_y
-        type2_arms_aligned = assembly_sign_by_outer_arm_squared*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        minus_pivot_2_y = inner_arm*sin_a2  # rod 2
+        type2_arms_aligned = (
+            ((x - pivot_1_x)*(minus_pivot_2_y + y) - (x - pivot_2_x)*(minus_pivot_1_y + y))
+            *assembly_sign_by_outer_arm_squared
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
-        return (axis_a1, axis_a2)
+        return (offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN)
 
     return Unrolled(every_branch, branches, branch)

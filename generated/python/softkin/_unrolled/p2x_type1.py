@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.p2x_type1 import Constants
 
 
@@ -57,21 +57,18 @@ def unrolled(k: Constants) -> Unrolled:
         span_2_x = tcp_offset_2 + x  # rod 2
         a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2 - tcp_offset_2  # rod 2
-        rod_2_x = x - pivot_2_x
-        rod_2_x_times_span_1_y_right = rod_2_x*span_1_y
+        rod_2_x_times_span_1_y_right = (x - pivot_2_x)*span_1_y
         span_1_x = x - tcp_offset_1  # rod 1
         a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         axis_a2_right = a2 + offset_a2
         axis_a1_left = a1 + offset_a1
         a2 = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2 - tcp_offset_2  # rod 2
-        rod_2_x = x - pivot_2_x
-        rod_2_x_times_span_1_y_left = rod_2_x*span_1_y
+        rod_2_x_times_span_1_y_left = (x - pivot_2_x)*span_1_y
         axis_a2_left = a2 + offset_a2
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1:
             pivot_1_x = a1 + tcp_offset_1  # rod 1
-            rod_1_x = x - pivot_1_x
-            rod_1_x_times_span_2_y = rod_1_x*span_2_y
+            rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
                 type2_arms_aligned_right = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
@@ -91,8 +88,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_right = a1 + offset_a1
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
             pivot_1_x = a1 + tcp_offset_1  # rod 1
-            rod_1_x = x - pivot_1_x
-            rod_1_x_times_span_2_y = rod_1_x*span_2_y
+            rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
                 type2_arms_aligned_right = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
@@ -115,7 +111,7 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_right, axis_a2_left) if refusal_right_left_2 == 0.0 else refusal_right_left_2),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         # z: a planar machine has none
@@ -134,13 +130,11 @@ def unrolled(k: Constants) -> Unrolled:
         span_2_x = tcp_offset_2 + x  # rod 2
         a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2 - tcp_offset_2  # rod 2
-        rod_2_x = x - pivot_2_x
-        rod_2_x_times_span_1_y_right = rod_2_x*span_1_y
+        rod_2_x_times_span_1_y_right = (x - pivot_2_x)*span_1_y
         span_1_x = x - tcp_offset_1  # rod 1
         a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         pivot_1_x = a1 + tcp_offset_1  # rod 1
-        rod_1_x = x - pivot_1_x
-        rod_1_x_times_span_2_y = rod_1_x*span_2_y
+        rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
         type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
@@ -148,16 +142,14 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right = a2 + offset_a2
         a2 = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2 - tcp_offset_2  # rod 2
-        rod_2_x = x - pivot_2_x
-        rod_2_x_times_span_1_y_left = rod_2_x*span_1_y
+        rod_2_x_times_span_1_y_left = (x - pivot_2_x)*span_1_y
         type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
         axis_a2_left = a2 + offset_a2
         a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         pivot_1_x = a1 + tcp_offset_1  # rod 1
-        rod_1_x = x - pivot_1_x
-        rod_1_x_times_span_2_y = rod_1_x*span_2_y
+        rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
         type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
@@ -172,7 +164,7 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_right, axis_a2_left) if refusal_right_left == 0.0 else None),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2 = signs
@@ -192,19 +184,13 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_x = x - tcp_offset_1  # rod 1
         a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
         pivot_1_x = a1 + tcp_offset_1  # rod 1
-        rod_1_x = x - pivot_1_x
-        rod_1_y = y - rail_y_1
         span_2_x = tcp_offset_2 + x  # rod 2
         a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
-        rod_2_x = x - pivot_2_x
-        rod_2_y = y - rail_y_2
-        type2_arms_aligned = constant_part*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
+        type2_arms_aligned = ((x - pivot_1_x)*(y - rail_y_2) - (x - pivot_2_x)*(y - rail_y_1))*constant_part
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
-        axis_a1 = a1 + offset_a1
-        axis_a2 = a2 + offset_a2
-        return (axis_a1, axis_a2)
+        return (a1 + offset_a1, a2 + offset_a2)
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.pcc import Constants
 
 
@@ -58,15 +58,18 @@ def unrolled(k: Constants) -> Unrolled:
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
             /scale_a2_from_a1_squared
         )
-        # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -1e-12):
-            return 2*(3.0,)
+        if sine_square_a2_from_a1 > 0.0:
+            sin_a2_from_a1 = sqrt(sine_square_a2_from_a1)
+        else:
+            # a2_from_a1: out of reach
+            if not (sine_square_a2_from_a1 >= -1e-12):
+                return 2*(3.0,)
+            sin_a2_from_a1 = 0.0
         cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
-        sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-            arm_across_a1 = link_length_2*sin_a2_from_a1
-            angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
+            angle_of_arm_along_a1 = arctan2(
+                link_length_2*sin_a2_from_a1 + 0.0, link_length_1 + link_length_2*cos_a2_from_a1 + 0.0,
+            )
             angle_of_x = arctan2(y + 0.0, x + 0.0)
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
@@ -84,9 +87,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2_right - open_a2 < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2)
-        limit_a1 = DEGREE*(axis_a1_right - offset_a1)
-        limit_a2 = DEGREE*(axis_a2_right - offset_a2)
-        limit_value_elbow = (limit_a2 - limit_a1)/DEGREE  # the outer arm relative to the inner arm
+        # the outer arm relative to the inner arm
+        limit_value_elbow = (DEGREE*(axis_a2_right - offset_a2) - DEGREE*(axis_a1_right - offset_a1))/DEGREE
         # limits of A1, limits of A2, limits of the outer arm relative to the inner arm
         refusal_right = (
             0.0
@@ -102,9 +104,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)/DEGREE
         if not -180.000000001 <= axis_a2_left - open_a2 < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2)
-        limit_a1 = DEGREE*(axis_a1_left - offset_a1)
-        limit_a2 = DEGREE*(axis_a2_left - offset_a2)
-        limit_value_elbow = (limit_a2 - limit_a1)/DEGREE  # the outer arm relative to the inner arm
+        # the outer arm relative to the inner arm
+        limit_value_elbow = (DEGREE*(axis_a2_left - offset_a2) - DEGREE*(axis_a1_left - offset_a1))/DEGREE
         # limits of A1, limits of A2, limits of the outer arm relative to the inner arm
         refusal_left = (
             0.0
@@ -118,10 +119,10 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_left, axis_a2_left) if refusal_left == 0.0 else refusal_left),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        ref_a1, _ = reference
+        ref_a1, _ = 2*(0.0,) if reference is None else reference
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 2*(None,)
@@ -132,15 +133,16 @@ def unrolled(k: Constants) -> Unrolled:
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
             /scale_a2_from_a1_squared
         )
-        # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -1e-12):
-            return 2*(None,)
+        if sine_square_a2_from_a1 > 0.0:
+            sin_a2_from_a1 = sqrt(sine_square_a2_from_a1)
+        else:
+            # a2_from_a1: out of reach
+            if not (sine_square_a2_from_a1 >= -1e-12):
+                return 2*(None,)
+            sin_a2_from_a1 = 0.0
         cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
-        sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-            arm_across_a1 = link_length_2*sin_a2_from_a1
-            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
             angle_of_x = arctan2(y, x)
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
@@ -148,21 +150,19 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        axis_a1_right = offset_a1 + angle_a1_right*RADIAN
         angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
         axis_a2_right = offset_a2 + (angle_a1_right + angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves
-        axis_a1_left = offset_a1 + angle_a1_left*RADIAN
         axis_a2_left = offset_a2 + (angle_a1_left - angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves
         return (
-            (axis_a1_right, axis_a2_right),
-            (axis_a1_left, axis_a2_left),
+            (offset_a1 + angle_a1_right*RADIAN, axis_a2_right),
+            (offset_a1 + angle_a1_left*RADIAN, axis_a2_left),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         (sigma_elbow,) = signs
-        ref_a1, _ = reference
+        ref_a1, _ = 2*(0.0,) if reference is None else reference
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
@@ -173,23 +173,20 @@ def unrolled(k: Constants) -> Unrolled:
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
             /scale_a2_from_a1_squared
         )
-        # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -1e-12):
-            return None
-        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
-        sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
-        if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
-            arm_across_a1 = link_length_2*sin_a2_from_a1
-            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
-            angle_of_x = arctan2(y, x)
-            angle_a1 = angle_of_x - angle_of_arm_along_a1
+        if sine_square_a2_from_a1 > 0.0:
+            sin_a2_from_a1 = sqrt(sine_square_a2_from_a1)*sigma_elbow
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1 = free_a1
-        axis_a1 = offset_a1 + angle_a1*RADIAN
-        angle_a2_from_a1 = arctan2(sin_a2_from_a1, cos_a2_from_a1)
-        axis_a2 = offset_a2 + (angle_a1 + angle_a2_from_a1)*RADIAN  # a2: what the sum a2_from_a1 leaves
-        return (axis_a1, axis_a2)
+            # a2_from_a1: out of reach
+            if not (sine_square_a2_from_a1 >= -1e-12):
+                return None
+            sin_a2_from_a1 = 0.0
+        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
+        if reach > machine_scale_times_free_angle:
+            angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
+        else:
+            angle_a1 = (ref_a1 - offset_a1)*DEGREE
+        # a2: what the sum a2_from_a1 leaves
+        axis_a2 = offset_a2 + (angle_a1 + arctan2(sin_a2_from_a1, cos_a2_from_a1))*RADIAN
+        return (offset_a1 + angle_a1*RADIAN, axis_a2)
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.polar import Constants
 
 
@@ -33,10 +33,10 @@ def unrolled(k: Constants) -> Unrolled:
         ref_c, _ = reference
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_c <= 1e9):
-            return 1*(2.0,)
+            return (2.0,)
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 1*(3.0,)
+            return (3.0,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
         if radius_c > machine_scale_times_free_angle:
@@ -52,22 +52,22 @@ def unrolled(k: Constants) -> Unrolled:
             axis_c = nearest_period(axis_c, open_c)
         # limits of C
         if not (axis_c >= lowest_c and axis_c <= highest_c):
-            return 1*(3.0,)
+            return (3.0,)
         axis_r = offset_r + radius_c
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return 1*(3.0,)
+            return (3.0,)
         return (
             (axis_c, axis_r),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        ref_c, _ = reference
+        ref_c, _ = 2*(0.0,) if reference is None else reference
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
-            return 1*(None,)
+            return (None,)
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
         # its reference where it is free
         if radius_c > machine_scale_times_free_angle:
@@ -77,16 +77,14 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN
-        axis_r = offset_r + radius_c
         return (
-            (axis_c, axis_r),
+            (offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN, offset_r + radius_c),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        ref_c, _ = reference
+        ref_c, _ = 2*(0.0,) if reference is None else reference
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
@@ -99,8 +97,6 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN
-        axis_r = offset_r + radius_c
-        return (axis_c, axis_r)
+        return (offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN, offset_r + radius_c)
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.pos_rrr import Constants
 
 
@@ -39,6 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
+    constant_part = 1e-34*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_plus_effective_q3_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2 = a2 - effective_q3_2
@@ -57,31 +58,37 @@ def unrolled(k: Constants) -> Unrolled:
         ):
             return 4*(2.0,)
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
-        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
-            return 4*(3.0,)
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # how far ahead of the axis the point is
+        if ahead_squared_q1 > 0.0:
+            ahead_q1 = sqrt(ahead_squared_q1)
+        else:
+            # q1: out of reach
+            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+                return 4*(3.0,)
+            ahead_q1 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
-            sin_swing_q1_times_x = x*sin_swing_q1
-            cos_swing_q1 = -d3/divisor_q1
-            cos_swing_q1_times_y = y*cos_swing_q1
-            cos_q1_front = (cos_swing_q1_times_y + sin_swing_q1_times_x)/divisor_q1
-            cos_swing_q1_times_x = x*cos_swing_q1
-            sin_swing_q1_times_y = y*sin_swing_q1
-            sin_q1_front = (sin_swing_q1_times_y - cos_swing_q1_times_x)/divisor_q1
-            cos_q1_back = (cos_swing_q1_times_y - sin_swing_q1_times_x)/divisor_q1
-            sin_q1_back = (-cos_swing_q1_times_x - sin_swing_q1_times_y)/divisor_q1
+            d3_times_y = d3*y
+            ahead_q1_times_x = ahead_q1*x
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_front = (ahead_q1_times_x - d3_times_y)/divisor_q1
+            d3_times_x = d3*x
+            ahead_q1_times_y = ahead_q1*y
+            sin_q1_front = (ahead_q1_times_y + d3_times_x)/divisor_q1
+            point_from_q1_front = ahead_q1
+            cos_q1_back = (-ahead_q1_times_x - d3_times_y)/divisor_q1
+            sin_q1_back = (d3_times_x - ahead_q1_times_y)/divisor_q1
+            point_from_q1_back = -ahead_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)
             sin_q1_front = sin(free_a1)
+            point_from_q1_front = x*cos_q1_front + y*sin_q1_front
             cos_q1_back = cos_q1_front
             sin_q1_back = sin_q1_front
-        wrist_x_from_q1 = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
+            point_from_q1_back = x*cos_q1_back + y*sin_q1_back
+        wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -89,12 +96,12 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
             *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
-        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = effective_q3_2*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
-            angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
+            angle_of_arm_across_q2 = arctan2(
+                effective_q3_2*minus_sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0,
+            )
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -106,8 +113,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
             axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
-        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
+        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3_2 - minus_angle_of_swing_q3
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
@@ -119,7 +126,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
             axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
-        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3_2 + minus_angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
@@ -142,19 +149,19 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_front_down = 3.0
             refusal_front_up = 3.0
-        wrist_x_from_q1 = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
+        wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
             (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
             *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
-        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = effective_q3_2*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
-            angle_of_arm_across_q2 = arctan2(arm_along_q2 + 0.0, arm_across_q2 + 0.0)
+            angle_of_arm_across_q2 = arctan2(
+                effective_q3_2*minus_sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0,
+            )
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -165,8 +172,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
             axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
-        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
+        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3_2 - minus_angle_of_swing_q3
         axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
             axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
@@ -176,7 +183,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_up - open_a2 < 179.999999999:
             axis_a2_back_up = nearest_period(axis_a2_back_up, open_a2)
-        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3_2 + minus_angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
@@ -210,36 +217,42 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_back, axis_a2_back_up, axis_a3_back_up) if refusal_back_up == 0.0 else refusal_back_up),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        ref_a1, ref_a2, _ = reference
+        ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
-        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
-            return 4*(None,)
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # how far ahead of the axis the point is
+        if ahead_squared_q1 > 0.0:
+            ahead_q1 = sqrt(ahead_squared_q1)
+        else:
+            # q1: out of reach
+            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+                return 4*(None,)
+            ahead_q1 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)
-            sin_swing_q1_times_x = x*sin_swing_q1
-            cos_swing_q1 = -d3/divisor_q1
-            cos_swing_q1_times_y = y*cos_swing_q1
-            cos_q1_front = (cos_swing_q1_times_y + sin_swing_q1_times_x)/divisor_q1
-            cos_swing_q1_times_x = x*cos_swing_q1
-            sin_swing_q1_times_y = y*sin_swing_q1
-            sin_q1_front = (sin_swing_q1_times_y - cos_swing_q1_times_x)/divisor_q1
-            cos_q1_back = (cos_swing_q1_times_y - sin_swing_q1_times_x)/divisor_q1
-            sin_q1_back = (-cos_swing_q1_times_x - sin_swing_q1_times_y)/divisor_q1
+            d3_times_y = d3*y
+            ahead_q1_times_x = ahead_q1*x
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_front = (ahead_q1_times_x - d3_times_y)/divisor_q1
+            d3_times_x = d3*x
+            ahead_q1_times_y = ahead_q1*y
+            sin_q1_front = (ahead_q1_times_y + d3_times_x)/divisor_q1
+            point_from_q1_front = ahead_q1
+            cos_q1_back = (-ahead_q1_times_x - d3_times_y)/divisor_q1
+            sin_q1_back = (d3_times_x - ahead_q1_times_y)/divisor_q1
+            point_from_q1_back = -ahead_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_front = cos(free_a1)
             sin_q1_front = sin(free_a1)
+            point_from_q1_front = x*cos_q1_front + y*sin_q1_front
             cos_q1_back = cos_q1_front
             sin_q1_back = sin_q1_front
-        wrist_x_from_q1 = x*cos_q1_front + y*sin_q1_front - a1  # what the unknown links must span
+            point_from_q1_back = x*cos_q1_back + y*sin_q1_back
+        wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -249,27 +262,19 @@ def unrolled(k: Constants) -> Unrolled:
         )
         refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN
-        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = effective_q3_2*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
-            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+            angle_of_arm_across_q2 = arctan2(effective_q3_2*minus_sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
-            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
-            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_front_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_front_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_down = free_a2
-            angle_q2_up = free_a2
-        axis_a2_front_down = offset_a2 + angle_q2_down*RADIAN
-        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
-        axis_a3_front_down = offset_a3 + angle_q3*RADIAN
-        axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
-        axis_a3_front_up = offset_a3 + angle_q3*RADIAN
-        wrist_x_from_q1 = x*cos_q1_back + y*sin_q1_back - a1  # what the unknown links must span
+            angle_q2_front_down = free_a2
+            angle_q2_front_up = free_a2
+        minus_angle_of_swing_q3_front_down = arctan2(minus_sin_swing_q3, cos_swing_q3)
+        wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
         sine_square_q3 = (
@@ -278,56 +283,80 @@ def unrolled(k: Constants) -> Unrolled:
         )
         refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN
-        sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = effective_q3_2*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
-            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
+            angle_of_arm_across_q2 = arctan2(effective_q3_2*minus_sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
-            angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
-            angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_back_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2_back_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
         else:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2_down = free_a2
-            angle_q2_up = free_a2
-        axis_a2_back_down = offset_a2 + angle_q2_down*RADIAN
-        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
-        axis_a3_back_down = offset_a3 + angle_q3*RADIAN
-        axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
-        axis_a3_back_up = offset_a3 + angle_q3*RADIAN
+            angle_q2_back_down = free_a2
+            angle_q2_back_up = free_a2
+        minus_angle_of_swing_q3_back_down = arctan2(minus_sin_swing_q3, cos_swing_q3)
         return (
-            ((axis_a1_front, axis_a2_front_down, axis_a3_front_down) if refusal_front == 0.0 else None),
-            ((axis_a1_back, axis_a2_back_down, axis_a3_back_down) if refusal_back == 0.0 else None),
-            ((axis_a1_front, axis_a2_front_up, axis_a3_front_up) if refusal_front == 0.0 else None),
-            ((axis_a1_back, axis_a2_back_up, axis_a3_back_up) if refusal_back == 0.0 else None),
+            (
+                (
+                    axis_a1_front, offset_a2 + angle_q2_front_down*RADIAN,
+                    offset_a3 + (angle_of_a3_by_effective_q3_2 - minus_angle_of_swing_q3_front_down)*RADIAN,
+                )
+                if refusal_front == 0.0
+                else None
+            ),
+            (
+                (
+                    axis_a1_back, offset_a2 + angle_q2_back_down*RADIAN,
+                    offset_a3 + (angle_of_a3_by_effective_q3_2 - minus_angle_of_swing_q3_back_down)*RADIAN,
+                )
+                if refusal_back == 0.0
+                else None
+            ),
+            (
+                (
+                    axis_a1_front, offset_a2 + angle_q2_front_up*RADIAN,
+                    offset_a3 + (angle_of_a3_by_effective_q3_2 + minus_angle_of_swing_q3_front_down)*RADIAN,
+                )
+                if refusal_front == 0.0
+                else None
+            ),
+            (
+                (
+                    axis_a1_back, offset_a2 + angle_q2_back_up*RADIAN,
+                    offset_a3 + (angle_of_a3_by_effective_q3_2 + minus_angle_of_swing_q3_back_down)*RADIAN,
+                )
+                if refusal_back == 0.0
+                else None
+            ),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_arm, sigma_elbow = signs
-        ref_a1, ref_a2, _ = reference
+        ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
-        # q1: aimed by the z_from_q1 equation
-        divisor_q1 = distance_q1 if distance_q1 > machine_scale_times_free_angle else machine_scale_times_free_angle
-        sine_square_q1 = (distance_q1 - d3)*(d3 + distance_q1)/(divisor_q1*divisor_q1)  # kept as a product
-        # q1: out of reach
-        if not (sine_square_q1 >= -1e-12):
-            return None
+        ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # how far ahead of the axis the point is
+        if ahead_squared_q1 > 0.0:
+            ahead_q1 = sqrt(ahead_squared_q1)*sigma_arm
+        else:
+            # q1: out of reach
+            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+                return None
+            ahead_q1 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
-            cos_swing_q1 = -d3/divisor_q1
-            sin_swing_q1 = (sqrt(sine_square_q1) if sine_square_q1 > 0.0 else 0.0)*sigma_arm
-            cos_q1 = (y*cos_swing_q1 + x*sin_swing_q1)/divisor_q1
-            sin_q1 = (y*sin_swing_q1 - x*cos_swing_q1)/divisor_q1
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1 = (ahead_q1*x - d3*y)/divisor_q1
+            sin_q1 = (ahead_q1*y + d3*x)/divisor_q1
+            point_from_q1 = ahead_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1 = cos(free_a1)
             sin_q1 = sin(free_a1)
-        wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
+            point_from_q1 = x*cos_q1 + y*sin_q1
+        wrist_x_from_q1 = point_from_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # kept as a product
@@ -335,25 +364,24 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
             *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
         )
-        # q3: out of reach
-        if not (sine_square_q3 >= -1e-12):
-            return None
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN
-        sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
+        if sine_square_q3 > 0.0:
+            minus_sin_swing_q3 = sqrt(sine_square_q3)*sigma_elbow
+        else:
+            # q3: out of reach
+            if not (sine_square_q3 >= -1e-12):
+                return None
+            minus_sin_swing_q3 = 0.0
         cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
         if reach > machine_scale_times_free_angle:
-            arm_along_q2 = -effective_q3_2*sin_swing_q3
-            arm_across_q2 = a2 + effective_q3_2*cos_swing_q3
-            angle_of_arm_across_q2 = arctan2(arm_along_q2, arm_across_q2)
-            angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
-            angle_q2 = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
+            angle_q2 = (
+                arctan2(effective_q3_2*minus_sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
+                - arctan2(wrist_x_from_q1, wrist_y_from_q1)
+            )
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_q2 = free_a2
-        axis_a2 = offset_a2 + angle_q2*RADIAN
-        angle_of_swing_q3 = arctan2(sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
-        axis_a3 = offset_a3 + angle_q3*RADIAN
-        return (axis_a1, axis_a2, axis_a3)
+            angle_q2 = (ref_a2 - offset_a2)*DEGREE
+        return (
+            offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN, offset_a2 + angle_q2*RADIAN,
+            offset_a3 + (angle_of_a3_by_effective_q3_2 - arctan2(minus_sin_swing_q3, cos_swing_q3))*RADIAN,
+        )
 
     return Unrolled(every_branch, branches, branch)

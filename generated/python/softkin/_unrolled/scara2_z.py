@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.scara2_z import Constants
 
 
@@ -55,19 +55,20 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
             *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 2*(3.0,)
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 2*(3.0,)
+            sin_a2 = 0.0
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return 2*(3.0,)
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
+            angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2 + 0.0, arm_length_1 + arm_length_2*cos_a2 + 0.0)
             angle_of_x = arctan2(y + 0.0, x + 0.0)
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
@@ -110,25 +111,26 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_left, axis_a2_left, axis_z) if refusal_left == 0.0 else refusal_left),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        ref_a1, _, _ = reference
+        ref_a1, _, _ = 3*(0.0,) if reference is None else reference
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
             (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
             *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 2*(None,)
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 2*(None,)
+            sin_a2 = 0.0
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
             angle_of_x = arctan2(y, x)
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
@@ -136,44 +138,36 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        axis_a1_right = offset_a1 + angle_a1_right*RADIAN
-        axis_a2_right = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
+        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_z = offset_z + z
-        axis_a1_left = offset_a1 + angle_a1_left*RADIAN
-        axis_a2_left = offset_a2_times_2 - axis_a2_right
         return (
-            (axis_a1_right, axis_a2_right, axis_z),
-            (axis_a1_left, axis_a2_left, axis_z),
+            (offset_a1 + angle_a1_right*RADIAN, axis_a2, axis_z),
+            (offset_a1 + angle_a1_left*RADIAN, offset_a2_times_2 - axis_a2, axis_z),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         (sigma_elbow,) = signs
-        ref_a1, _, _ = reference
+        ref_a1, _, _ = 3*(0.0,) if reference is None else reference
         reach = sqrt(x*x + y*y)
         # kept as a product
         sine_square_a2 = (
             (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
             *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return None
-        cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach > machine_scale_times_free_angle:
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
-            angle_of_x = arctan2(y, x)
-            angle_a1 = angle_of_x - angle_of_arm_along_a1
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)*sigma_elbow
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1 = free_a1
-        axis_a1 = offset_a1 + angle_a1*RADIAN
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
-        axis_z = offset_z + z
-        return (axis_a1, axis_a2, axis_z)
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return None
+            sin_a2 = 0.0
+        cos_a2 = (reach*reach - constant_part)/scale_a2
+        if reach > machine_scale_times_free_angle:
+            angle_a1 = arctan2(y, x) - arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
+        else:
+            angle_a1 = (ref_a1 - offset_a1)*DEGREE
+        return (offset_a1 + angle_a1*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN, offset_z + z)
 
     return Unrolled(every_branch, branches, branch)

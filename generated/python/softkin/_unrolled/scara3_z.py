@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.scara3_z import Constants
 
 
@@ -84,19 +84,20 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
             *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 2*(3.0,)
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 2*(3.0,)
+            sin_a2 = 0.0
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return 2*(3.0,)
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
+            angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2 + 0.0, arm_length_1 + arm_length_2*cos_a2 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
@@ -150,10 +151,10 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_left, axis_a2_left, axis_a3_left, axis_z) if refusal_left == 0.0 else refusal_left),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        ref_a1, _, _, _ = reference
+        ref_a1, _, _, _ = 4*(0.0,) if reference is None else reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -171,15 +172,16 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
             *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 2*(None,)
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 2*(None,)
+            sin_a2 = 0.0
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
@@ -187,26 +189,22 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        axis_a1_right = offset_a1 + angle_a1_right*RADIAN
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2*RADIAN
-        axis_a2_right = offset_a2 + part_of_axis_a2
         angle_heading = arctan2(sin_heading, cos_heading)
         axis_a3_right = offset_a3 + (angle_heading - angle_a1_right - angle_a2)*RADIAN  # a3: what the sum a123 leaves
         axis_z = offset_z + z
-        axis_a1_left = offset_a1 + angle_a1_left*RADIAN
-        axis_a2_left = offset_a2 - part_of_axis_a2
         axis_a3_left = offset_a3 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN  # a3: what the sum a123 leaves
         return (
-            (axis_a1_right, axis_a2_right, axis_a3_right, axis_z),
-            (axis_a1_left, axis_a2_left, axis_a3_left, axis_z),
+            (offset_a1 + angle_a1_right*RADIAN, offset_a2 + part_of_axis_a2, axis_a3_right, axis_z),
+            (offset_a1 + angle_a1_left*RADIAN, offset_a2 - part_of_axis_a2, axis_a3_left, axis_z),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
-        ref_a1, _, _, _ = reference
+        ref_a1, _, _, _ = 4*(0.0,) if reference is None else reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -224,26 +222,21 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
             *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return None
-        cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach > machine_scale_times_free_angle:
-            arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
-            arm_across_a1 = arm_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
-            angle_of_wrist_x = arctan2(wrist_y, wrist_x)
-            angle_a1 = angle_of_wrist_x - angle_of_arm_along_a1
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)*sigma_elbow
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1 = free_a1
-        axis_a1 = offset_a1 + angle_a1*RADIAN
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return None
+            sin_a2 = 0.0
+        cos_a2 = (reach*reach - constant_part)/scale_a2
+        if reach > machine_scale_times_free_angle:
+            angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
+        else:
+            angle_a1 = (ref_a1 - offset_a1)*DEGREE
         angle_a2 = arctan2(sin_a2, cos_a2)
-        axis_a2 = offset_a2 + angle_a2*RADIAN
-        angle_heading = arctan2(sin_heading, cos_heading)
-        axis_a3 = offset_a3 + (angle_heading - angle_a1 - angle_a2)*RADIAN  # a3: what the sum a123 leaves
-        axis_z = offset_z + z
-        return (axis_a1, axis_a2, axis_a3, axis_z)
+        # a3: what the sum a123 leaves
+        axis_a3 = offset_a3 + (arctan2(sin_heading, cos_heading) - angle_a1 - angle_a2)*RADIAN
+        return (offset_a1 + angle_a1*RADIAN, offset_a2 + angle_a2*RADIAN, axis_a3, offset_z + z)
 
     return Unrolled(every_branch, branches, branch)

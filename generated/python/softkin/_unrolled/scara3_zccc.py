@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.scara3_zccc import Constants
 
 
@@ -84,19 +84,20 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
         )
-        # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
-            return 2*(3.0,)
+        if sine_square_a3 > 0.0:
+            sin_a3 = sqrt(sine_square_a3)
+        else:
+            # a3: out of reach
+            if not (sine_square_a3 >= -1e-12):
+                return 2*(3.0,)
+            sin_a3 = 0.0
         axis_a1 = offset_a1 + z
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3.0,)
         cos_a3 = (reach*reach - constant_part)/scale_a3
-        sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2 = link_length_2*sin_a3
-            angle_of_arm_along_a2 = arctan2(arm_across_a2 + 0.0, arm_along_a2 + 0.0)
+            angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3 + 0.0, link_length_1 + link_length_2*cos_a3 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
             angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
@@ -150,10 +151,10 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1, axis_a2_left, axis_a3_left, axis_a4_left) if refusal_left == 0.0 else refusal_left),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        _, ref_a2, _, _ = reference
+        _, ref_a2, _, _ = 4*(0.0,) if reference is None else reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -171,16 +172,17 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
         )
-        # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
-            return 2*(None,)
+        if sine_square_a3 > 0.0:
+            sin_a3 = sqrt(sine_square_a3)
+        else:
+            # a3: out of reach
+            if not (sine_square_a3 >= -1e-12):
+                return 2*(None,)
+            sin_a3 = 0.0
         axis_a1 = offset_a1 + z
         cos_a3 = (reach*reach - constant_part)/scale_a3
-        sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2 = link_length_2*sin_a3
-            angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)
+            angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
             angle_a2_right = angle_of_wrist_x - angle_of_arm_along_a2
             angle_a2_left = angle_of_arm_along_a2 + angle_of_wrist_x
@@ -188,25 +190,21 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_a2_right = free_a2
             angle_a2_left = free_a2
-        axis_a2_right = offset_a2 + angle_a2_right*RADIAN
         angle_a3 = arctan2(sin_a3, cos_a3)
         part_of_axis_a3 = angle_a3*RADIAN
-        axis_a3_right = offset_a3 + part_of_axis_a3
         angle_heading = arctan2(sin_heading, cos_heading)
         axis_a4_right = offset_a4 + (angle_heading - angle_a2_right - angle_a3)*RADIAN  # a4: what the sum a234 leaves
-        axis_a2_left = offset_a2 + angle_a2_left*RADIAN
-        axis_a3_left = offset_a3 - part_of_axis_a3
         axis_a4_left = offset_a4 + (angle_a3 + angle_heading - angle_a2_left)*RADIAN  # a4: what the sum a234 leaves
         return (
-            (axis_a1, axis_a2_right, axis_a3_right, axis_a4_right),
-            (axis_a1, axis_a2_left, axis_a3_left, axis_a4_left),
+            (axis_a1, offset_a2 + angle_a2_right*RADIAN, offset_a3 + part_of_axis_a3, axis_a4_right),
+            (axis_a1, offset_a2 + angle_a2_left*RADIAN, offset_a3 - part_of_axis_a3, axis_a4_left),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
-        _, ref_a2, _, _ = reference
+        _, ref_a2, _, _ = 4*(0.0,) if reference is None else reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -224,26 +222,21 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
         )
-        # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
-            return None
-        axis_a1 = offset_a1 + z
-        cos_a3 = (reach*reach - constant_part)/scale_a3
-        sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
-        if reach > machine_scale_times_free_angle:
-            arm_along_a2 = link_length_1 + link_length_2*cos_a3
-            arm_across_a2 = link_length_2*sin_a3
-            angle_of_arm_along_a2 = arctan2(arm_across_a2, arm_along_a2)
-            angle_of_wrist_x = arctan2(wrist_y, wrist_x)
-            angle_a2 = angle_of_wrist_x - angle_of_arm_along_a2
+        if sine_square_a3 > 0.0:
+            sin_a3 = sqrt(sine_square_a3)*sigma_elbow
         else:
-            free_a2 = (ref_a2 - offset_a2)*DEGREE
-            angle_a2 = free_a2
-        axis_a2 = offset_a2 + angle_a2*RADIAN
+            # a3: out of reach
+            if not (sine_square_a3 >= -1e-12):
+                return None
+            sin_a3 = 0.0
+        cos_a3 = (reach*reach - constant_part)/scale_a3
+        if reach > machine_scale_times_free_angle:
+            angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
+        else:
+            angle_a2 = (ref_a2 - offset_a2)*DEGREE
         angle_a3 = arctan2(sin_a3, cos_a3)
-        axis_a3 = offset_a3 + angle_a3*RADIAN
-        angle_heading = arctan2(sin_heading, cos_heading)
-        axis_a4 = offset_a4 + (angle_heading - angle_a2 - angle_a3)*RADIAN  # a4: what the sum a234 leaves
-        return (axis_a1, axis_a2, axis_a3, axis_a4)
+        # a4: what the sum a234 leaves
+        axis_a4 = offset_a4 + (arctan2(sin_heading, cos_heading) - angle_a2 - angle_a3)*RADIAN
+        return (offset_a1 + z, offset_a2 + angle_a2*RADIAN, offset_a3 + angle_a3*RADIAN, axis_a4)
 
     return Unrolled(every_branch, branches, branch)

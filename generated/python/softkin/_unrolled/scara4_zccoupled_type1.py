@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.scara4_zccoupled_type1 import Constants
 
 
@@ -80,15 +80,16 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 2*(3.0,)
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 2*(3.0,)
+            sin_a2 = 0.0
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
+            angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_x = arctan2(y + 0.0, x + 0.0)
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
@@ -148,10 +149,10 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_left, axis_a2_left, axis_a3_left, axis_a4_left) if refusal_left == 0.0 else refusal_left),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        ref_a1, _, _, ref_a4 = reference
+        ref_a1, _, _, ref_a4 = 4*(0.0,) if reference is None else reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -164,15 +165,16 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 2*(None,)
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 2*(None,)
+            sin_a2 = 0.0
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_x = arctan2(y, x)
             angle_a1_right = angle_of_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_x
@@ -180,10 +182,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1_right = free_a1
             angle_a1_left = free_a1
-        axis_a1_right = offset_a1 + angle_a1_right*RADIAN
         angle_a2 = arctan2(sin_a2, cos_a2)
         part_of_axis_a2 = angle_a2*RADIAN
-        axis_a2_right = offset_a2 + part_of_axis_a2
         angle_heading = arctan2(heading_across, heading_along)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
@@ -191,27 +191,23 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a4_right - open_a4 < 179.999999999:
             axis_a4_right = nearest_period(axis_a4_right, open_a4)
         a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
-        axis_a3_right = a3 + offset_a3
-        axis_a1_left = offset_a1 + angle_a1_left*RADIAN
-        axis_a2_left = offset_a2 - part_of_axis_a2
+        a3_right = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
         axis_a4_left = offset_a4 + (angle_a2 + angle_heading - angle_a1_left)/DEGREE
         if not -180.000000001 <= axis_a4_left - open_a4 < 179.999999999:
             axis_a4_left = nearest_period(axis_a4_left, open_a4)
         a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
-        a3 = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
-        axis_a3_left = a3 + offset_a3
+        a3_left = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
         return (
-            (axis_a1_right, axis_a2_right, axis_a3_right, axis_a4_right),
-            (axis_a1_left, axis_a2_left, axis_a3_left, axis_a4_left),
+            (offset_a1 + angle_a1_right*RADIAN, offset_a2 + part_of_axis_a2, a3_right + offset_a3, axis_a4_right),
+            (offset_a1 + angle_a1_left*RADIAN, offset_a2 - part_of_axis_a2, a3_left + offset_a3, axis_a4_left),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
-        ref_a1, _, _, ref_a4 = reference
+        ref_a1, _, _, ref_a4 = 4*(0.0,) if reference is None else reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -224,23 +220,19 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return None
-        cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
-        if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
-            angle_of_x = arctan2(y, x)
-            angle_a1 = angle_of_x - angle_of_arm_along_a1
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)*sigma_elbow
         else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            angle_a1 = free_a1
-        axis_a1 = offset_a1 + angle_a1*RADIAN
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return None
+            sin_a2 = 0.0
+        cos_a2 = (reach*reach - constant_part)/scale_a2
+        if reach > machine_scale_times_free_angle:
+            angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
+        else:
+            angle_a1 = (ref_a1 - offset_a1)*DEGREE
         angle_a2 = arctan2(sin_a2, cos_a2)
-        axis_a2 = offset_a2 + angle_a2*RADIAN
         angle_heading = arctan2(heading_across, heading_along)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         # a4: linear pair in the cosine of the heading and sine of the heading equations; A4: its turn
@@ -249,7 +241,6 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4 = nearest_period(axis_a4, open_a4)
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
-        axis_a3 = a3 + offset_a3
-        return (axis_a1, axis_a2, axis_a3, axis_a4)
+        return (offset_a1 + angle_a1*RADIAN, offset_a2 + angle_a2*RADIAN, a3 + offset_a3, axis_a4)
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.sccc import Constants
 
 
@@ -92,15 +92,16 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 2*(3.0,)
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 2*(3.0,)
+            sin_a2 = 0.0
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1 + 0.0, arm_along_a1 + 0.0)
+            angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
@@ -125,8 +126,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            free_a2 = ref_motor_a2 + coupling_12*free_a1
-            part_of_open_a2 = offset_a2 + free_a2/DEGREE
+            part_of_open_a2 = offset_a2 + (ref_motor_a2 + coupling_12*free_a1)/DEGREE
             open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right/DEGREE
             open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left/DEGREE
         axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: its turn
@@ -145,8 +145,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            ref_motor_a3 = (ref_a3 - offset_a3)*DEGREE
-            free_a3 = ref_motor_a3 + coupling_13*free_a1 + coupling_23*ref_motor_a2
+            free_a3 = (ref_a3 - offset_a3)*DEGREE + coupling_13*free_a1 + coupling_23*ref_motor_a2
             part_of_open_a3 = offset_a3 + free_a3/DEGREE
             open_a3_right = part_of_open_a3 + (-coupling_13*motor_a1_right - coupling_23*motor_a2_right)/DEGREE
             open_a3_left = part_of_open_a3 + (-coupling_13*motor_a1_left - coupling_23*motor_a2_left)/DEGREE
@@ -157,10 +156,8 @@ def unrolled(k: Constants) -> Unrolled:
         )
         if not -180.000000001 <= axis_a3_right - open_a3_right < 179.999999999:
             axis_a3_right = nearest_period(axis_a3_right, open_a3_right)
-        limit_a2 = motor_a2_right + coupling_12*motor_a1_right
-        limit_value_joint_2 = limit_a2/DEGREE  # joint 2
-        limit_motor_a3 = DEGREE*(axis_a3_right - offset_a3)
-        limit_a3 = limit_motor_a3 + coupling_13*motor_a1_right + coupling_23*motor_a2_right
+        limit_value_joint_2 = (motor_a2_right + coupling_12*motor_a1_right)/DEGREE  # joint 2
+        limit_a3 = DEGREE*(axis_a3_right - offset_a3) + coupling_13*motor_a1_right + coupling_23*motor_a2_right
         limit_value_joint_3 = limit_a3/DEGREE  # joint 3
         # limits of A1, limits of A2, limits of A3, limits of joint 2, limits of joint 3
         refusal_right = (
@@ -177,10 +174,8 @@ def unrolled(k: Constants) -> Unrolled:
         )
         if not -180.000000001 <= axis_a3_left - open_a3_left < 179.999999999:
             axis_a3_left = nearest_period(axis_a3_left, open_a3_left)
-        limit_a2 = motor_a2_left + coupling_12*motor_a1_left
-        limit_value_joint_2 = limit_a2/DEGREE  # joint 2
-        limit_motor_a3 = DEGREE*(axis_a3_left - offset_a3)
-        limit_a3 = limit_motor_a3 + coupling_13*motor_a1_left + coupling_23*motor_a2_left
+        limit_value_joint_2 = (motor_a2_left + coupling_12*motor_a1_left)/DEGREE  # joint 2
+        limit_a3 = DEGREE*(axis_a3_left - offset_a3) + coupling_13*motor_a1_left + coupling_23*motor_a2_left
         limit_value_joint_3 = limit_a3/DEGREE  # joint 3
         # limits of A1, limits of A2, limits of A3, limits of joint 2, limits of joint 3
         refusal_left = (
@@ -195,10 +190,10 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_left, axis_a2_left, axis_a3_left) if refusal_left == 0.0 else refusal_left),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
-        ref_a1, ref_a2, _ = reference
+        ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -219,15 +214,16 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 2*(None,)
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 2*(None,)
+            sin_a2 = 0.0
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
+            angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
             angle_a1_right = angle_of_wrist_x - angle_of_arm_along_a1
             angle_a1_left = angle_of_arm_along_a1 + angle_of_wrist_x
@@ -251,40 +247,36 @@ def unrolled(k: Constants) -> Unrolled:
             open_a2_left = mid_a2
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            free_a2 = ref_motor_a2 + coupling_12*free_a1
-            part_of_open_a2 = offset_a2 + free_a2*RADIAN
+            part_of_open_a2 = offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*free_a1)*RADIAN
             open_a2_right = part_of_open_a2 - coupling_12*motor_a1_right*RADIAN
             open_a2_left = part_of_open_a2 - coupling_12*motor_a1_left*RADIAN
         axis_a2_right = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1_right/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right - open_a2_right < 179.999999999:
             axis_a2_right = nearest_period(axis_a2_right, open_a2_right)
         angle_heading = arctan2(sin_heading, cos_heading)
-        motor_a2 = DEGREE*(axis_a2_right - offset_a2)
         # a3: what the sum a123 leaves
         axis_a3_right = (
             offset_a3 + (angle_heading - angle_a1_right - angle_a2)*RADIAN
-            - (coupling_13*motor_a1_right + coupling_23*motor_a2)*RADIAN
+            - (coupling_13*motor_a1_right + (DEGREE*(axis_a2_right - offset_a2))*coupling_23)*RADIAN
         )
         axis_a2_left = offset_a2 - angle_a2/DEGREE - coupling_12*motor_a1_left/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left - open_a2_left < 179.999999999:
             axis_a2_left = nearest_period(axis_a2_left, open_a2_left)
-        motor_a2 = DEGREE*(axis_a2_left - offset_a2)
         # a3: what the sum a123 leaves
         axis_a3_left = (
             offset_a3 + (angle_a2 + angle_heading - angle_a1_left)*RADIAN
-            - (coupling_13*motor_a1_left + coupling_23*motor_a2)*RADIAN
+            - (coupling_13*motor_a1_left + (DEGREE*(axis_a2_left - offset_a2))*coupling_23)*RADIAN
         )
         return (
             (axis_a1_right, axis_a2_right, axis_a3_right),
             (axis_a1_left, axis_a2_left, axis_a3_left),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         (sigma_elbow,) = signs
-        ref_a1, ref_a2, _ = reference
+        ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
         heading_along = r11 + r22  # projection: the tool direction swings to the machine's, the twist is kept
         heading_across = r21 - r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
@@ -305,17 +297,16 @@ def unrolled(k: Constants) -> Unrolled:
             (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
             *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return None
+        if sine_square_a2 > 0.0:
+            sin_a2 = sqrt(sine_square_a2)*sigma_elbow
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return None
+            sin_a2 = 0.0
         cos_a2 = (reach*reach - constant_part)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
         if reach > machine_scale_times_free_angle:
-            arm_along_a1 = link_length_1 + link_length_2*cos_a2
-            arm_across_a1 = link_length_2*sin_a2
-            angle_of_arm_along_a1 = arctan2(arm_across_a1, arm_along_a1)
-            angle_of_wrist_x = arctan2(wrist_y, wrist_x)
-            angle_a1 = angle_of_wrist_x - angle_of_arm_along_a1
+            angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             angle_a1 = free_a1
@@ -330,18 +321,14 @@ def unrolled(k: Constants) -> Unrolled:
             open_a2 = mid_a2
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            ref_motor_a2 = (ref_a2 - offset_a2)*DEGREE
-            free_a2 = ref_motor_a2 + coupling_12*free_a1
-            open_a2 = offset_a2 + free_a2*RADIAN - coupling_12*motor_a1*RADIAN
+            open_a2 = offset_a2 + ((ref_a2 - offset_a2)*DEGREE + coupling_12*free_a1)*RADIAN - coupling_12*motor_a1*RADIAN
         axis_a2 = offset_a2 + angle_a2/DEGREE - coupling_12*motor_a1/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - open_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, open_a2)
-        angle_heading = arctan2(sin_heading, cos_heading)
-        motor_a2 = DEGREE*(axis_a2 - offset_a2)
         # a3: what the sum a123 leaves
         axis_a3 = (
-            offset_a3 + (angle_heading - angle_a1 - angle_a2)*RADIAN
-            - (coupling_13*motor_a1 + coupling_23*motor_a2)*RADIAN
+            offset_a3 + (arctan2(sin_heading, cos_heading) - angle_a1 - angle_a2)*RADIAN
+            - (coupling_13*motor_a1 + (DEGREE*(axis_a2 - offset_a2))*coupling_23)*RADIAN
         )
         return (axis_a1, axis_a2, axis_a3)
 

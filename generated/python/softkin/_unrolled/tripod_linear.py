@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import root, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.tripod_linear import Constants
 
 
@@ -57,8 +57,7 @@ def unrolled(k: Constants) -> Unrolled:
         # numbers of reasonable size
         if not (-1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9):
             return 8*(2.0,)
-        arm_length_squared_minus_z_squared = arm_length_squared - z*z
-        part_of_root_square_a1 = arm_length_squared_minus_z_squared + z*z*cos_rail_angle_squared
+        part_of_root_square_a1 = arm_length_squared - z*z + z*z*cos_rail_angle_squared
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
@@ -69,9 +68,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
             return 8*(3.0,)
         span_2_x = constant_part_2 + x  # rod 2
-        part_of_root_square_a1_minus_span_2_x_squared = part_of_root_square_a1 - span_2_x*span_2_x
         part_of_root_square_a2 = (
-            part_of_root_square_a1_minus_span_2_x_squared + span_2_x*span_2_x*sin_rail_angle_squared_by_4
+            part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
         )
         part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle - part_of_root_square_a2
         span_2_y = y - constant_part_3  # rod 2
@@ -107,29 +105,29 @@ def unrolled(k: Constants) -> Unrolled:
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
         rod_2_x_below = x - pivot_2_x
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
-        rod_2_z_below = z - pivot_2_z
+        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
+        rod_2_z_below = minus_pivot_2_z + z
         middle_a3 = constant_part_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
         a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
         pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
         rod_3_x_below = x - pivot_3_x
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
-        rod_3_z_below = z - pivot_3_z
+        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
+        rod_3_z_below = minus_pivot_3_z + z
         part_of_type2_rods_coplanar = rod_2_x_below*rod_3_z_below*y - rod_2_z_below*rod_3_x_below*y
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
-        a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0) - middle_a1
+        minus_a1 = middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
         rod_2_y_below = y - pivot_2_y
         pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
         rod_3_y_below = y - pivot_3_y
         axis_a3_below = a3 + offset_a3
         axis_a2_below = a2 + offset_a2
-        axis_a1_below = a1 + offset_a1
+        axis_a1_below = offset_a1 - minus_a1
         a3 = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
         pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
         rod_3_x_above = x - pivot_3_x
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
-        rod_3_z_above = z - pivot_3_z
+        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
+        rod_3_z_above = minus_pivot_3_z + z
         part_of_type2_rods_coplanar_below_above_below = rod_2_x_below*rod_3_z_above*y - rod_2_z_below*rod_3_x_above*y
         pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
         rod_3_y_above = y - pivot_3_y
@@ -137,8 +135,8 @@ def unrolled(k: Constants) -> Unrolled:
         a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
         rod_2_x_above = x - pivot_2_x
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
-        rod_2_z_above = z - pivot_2_z
+        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
+        rod_2_z_above = minus_pivot_2_z + z
         part_of_type2_rods_coplanar_below_above_below_above_below_above_2 = (
             rod_2_x_above*rod_3_z_below*y - rod_2_z_above*rod_3_x_below*y
         )
@@ -149,9 +147,9 @@ def unrolled(k: Constants) -> Unrolled:
             rod_2_x_above*rod_3_z_above*y - rod_2_z_above*rod_3_x_above*y
         )
         if axis_a1_below >= lowest_a1 and axis_a1_below <= highest_a1:
-            pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+            pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
             rod_1_x = x - pivot_1_x
-            pivot_1_z = -a1*cos_rail_angle  # rod 1
+            pivot_1_z = minus_a1*cos_rail_angle  # rod 1
             rod_1_z = z - pivot_1_z
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
@@ -218,12 +216,12 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_below_below_above_2 = 3.0
             refusal_below_above_below_2 = 3.0
             refusal_below_above_above_2 = 3.0
-        a1 = -middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        axis_a1_above = a1 + offset_a1
+        minus_a1 = middle_a1 + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        axis_a1_above = offset_a1 - minus_a1
         if axis_a1_above >= lowest_a1 and axis_a1_above <= highest_a1:
-            pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+            pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
             rod_1_x = x - pivot_1_x
-            pivot_1_z = -a1*cos_rail_angle  # rod 1
+            pivot_1_z = minus_a1*cos_rail_angle  # rod 1
             rod_1_z = z - pivot_1_z
             if axis_a2_below >= lowest_a2 and axis_a2_below <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
@@ -333,11 +331,10 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        arm_length_squared_minus_z_squared = arm_length_squared - z*z
-        part_of_root_square_a1 = arm_length_squared_minus_z_squared + z*z*cos_rail_angle_squared
+        part_of_root_square_a1 = arm_length_squared - z*z + z*z*cos_rail_angle_squared
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
@@ -348,9 +345,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
             return 8*(None,)
         span_2_x = constant_part_2 + x  # rod 2
-        part_of_root_square_a1_minus_span_2_x_squared = part_of_root_square_a1 - span_2_x*span_2_x
         part_of_root_square_a2 = (
-            part_of_root_square_a1_minus_span_2_x_squared + span_2_x*span_2_x*sin_rail_angle_squared_by_4
+            part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
         )
         part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle - part_of_root_square_a2
         span_2_y = y - constant_part_3  # rod 2
@@ -386,20 +382,20 @@ def unrolled(k: Constants) -> Unrolled:
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
         rod_2_x_below = x - pivot_2_x
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
-        rod_2_z_below = z - pivot_2_z
+        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
+        rod_2_z_below = minus_pivot_2_z + z
         middle_a3 = constant_part_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
         a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
         pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
         rod_3_x_below = x - pivot_3_x
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
-        rod_3_z_below = z - pivot_3_z
+        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
+        rod_3_z_below = minus_pivot_3_z + z
         part_of_type2_rods_coplanar = rod_2_x_below*rod_3_z_below*y - rod_2_z_below*rod_3_x_below*y
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
-        a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0) - middle_a1
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        minus_a1 = middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
+        pivot_1_z = minus_a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
         pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
         rod_2_y_below = y - pivot_2_y
@@ -415,14 +411,14 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_below_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        axis_a1_below = a1 + offset_a1
+        axis_a1_below = offset_a1 - minus_a1
         axis_a2_below = a2 + offset_a2
         axis_a3_below = a3 + offset_a3
         a3 = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
         pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
         rod_3_x_above = x - pivot_3_x
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
-        rod_3_z_above = z - pivot_3_z
+        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
+        rod_3_z_above = minus_pivot_3_z + z
         part_of_type2_rods_coplanar_below_above_below = rod_2_x_below*rod_3_z_above*y - rod_2_z_below*rod_3_x_above*y
         pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
         rod_3_y_above = y - pivot_3_y
@@ -440,8 +436,8 @@ def unrolled(k: Constants) -> Unrolled:
         a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
         rod_2_x_above = x - pivot_2_x
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
-        rod_2_z_above = z - pivot_2_z
+        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
+        rod_2_z_above = minus_pivot_2_z + z
         part_of_type2_rods_coplanar_below_above_below_above_below_above_2 = (
             rod_2_x_above*rod_3_z_below*y - rod_2_z_above*rod_3_x_below*y
         )
@@ -471,10 +467,10 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_below_above_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        a1 = -middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        minus_a1 = middle_a1 + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
+        pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
+        pivot_1_z = minus_a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
         type2_rods_coplanar = (
             (
@@ -486,7 +482,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_above_below_below = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
-        axis_a1_above = a1 + offset_a1
+        axis_a1_above = offset_a1 - minus_a1
         type2_rods_coplanar = (
             (
                 rod_1_x*rod_2_y_below*rod_3_z_above + rod_1_z*rod_2_x_below*rod_3_y_above
@@ -528,7 +524,7 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_above, axis_a2_above, axis_a3_above) if refusal_above_above_above == 0.0 else None),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
@@ -564,11 +560,13 @@ def unrolled(k: Constants) -> Unrolled:
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
             return None
-        middle_a1 = z*cos_rail_angle + span_1_x*sin_rail_angle
-        a1 = (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1 - middle_a1
-        pivot_1_x = inner_radius_minus_outer_radius - a1*sin_rail_angle  # rod 1
+        minus_a1 = (
+            z*cos_rail_angle + span_1_x*sin_rail_angle
+            - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
+        )
+        pivot_1_x = inner_radius_minus_outer_radius + minus_a1*sin_rail_angle  # rod 1
         rod_1_x = x - pivot_1_x
-        pivot_1_z = -a1*cos_rail_angle  # rod 1
+        pivot_1_z = minus_a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
         middle_a2 = span_2_x*sin_rail_angle_by_2 - constant_part_times_sin_rail_angle_by_2*span_2_y - z*cos_rail_angle
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
@@ -576,16 +574,16 @@ def unrolled(k: Constants) -> Unrolled:
         rod_2_x = x - pivot_2_x
         pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
         rod_2_y = y - pivot_2_y
-        pivot_2_z = -a2*cos_rail_angle  # rod 2
-        rod_2_z = z - pivot_2_z
+        minus_pivot_2_z = a2*cos_rail_angle  # rod 2
+        rod_2_z = minus_pivot_2_z + z
         middle_a3 = constant_part_times_sin_rail_angle_by_2*span_3_y + span_2_x*sin_rail_angle_by_2 - z*cos_rail_angle
         a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
         rod_3_x = x - pivot_3_x
         pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
         rod_3_y = y - pivot_3_y
-        pivot_3_z = -a3*cos_rail_angle  # rod 3
-        rod_3_z = z - pivot_3_z
+        minus_pivot_3_z = a3*cos_rail_angle  # rod 3
+        rod_3_z = minus_pivot_3_z + z
         type2_rods_coplanar = (
             assembly_sign_by_constant_part
             *(
@@ -605,9 +603,6 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
             return None
-        axis_a1 = a1 + offset_a1
-        axis_a2 = a2 + offset_a2
-        axis_a3 = a3 + offset_a3
-        return (axis_a1, axis_a2, axis_a3)
+        return (offset_a1 - minus_a1, a2 + offset_a2, a3 + offset_a3)
 
     return Unrolled(every_branch, branches, branch)

@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.tripod_p3z import Constants
 
 
@@ -60,34 +60,43 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_y = constant_part_2 + y  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
-        # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding):
-            return 8*(3.0,)
+        if root_square_a1 > 0.0:
+            a1 = z + sqrt(root_square_a1)
+        else:
+            # rod 1 cannot reach
+            if not (root_square_a1 >= -arm_length_squared_times_rounding):
+                return 8*(3.0,)
+            a1 = z
         span_2_x = constant_part_3 + x  # rod 2
         span_2_y = constant_part_4 + y  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
-        # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding):
-            return 8*(3.0,)
+        if root_square_a2 > 0.0:
+            a2 = z + sqrt(root_square_a2)
+        else:
+            # rod 2 cannot reach
+            if not (root_square_a2 >= -arm_length_squared_times_rounding):
+                return 8*(3.0,)
+            a2 = z
         span_3_x = constant_part_5 + x  # rod 3
         span_3_y = constant_part_6 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
-        # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding):
-            return 8*(3.0,)
+        if root_square_a3 > 0.0:
+            a3 = z + sqrt(root_square_a3)
+        else:
+            # rod 3 cannot reach
+            if not (root_square_a3 >= -arm_length_squared_times_rounding):
+                return 8*(3.0,)
+            a3 = z
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        a1 = z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
-        a3 = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
         rod_3_z = z - a3
         part_of_type2_rods_coplanar = rod_1_x*rod_2_y*rod_3_z - rod_1_y*rod_2_x*rod_3_z
-        a2 = z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         rod_2_z = z - a2
         part_of_type2_rods_coplanar_above_above_above_2 = rod_1_x*rod_2_z*rod_3_y - rod_1_y*rod_2_z*rod_3_x
         axis_a3_above = a3 + offset_a3
@@ -288,46 +297,55 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         span_1_x = constant_part + x  # rod 1
         span_1_y = constant_part_2 + y  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
-        # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding):
-            return 8*(None,)
+        if root_square_a1 > 0.0:
+            a1 = z + sqrt(root_square_a1)
+        else:
+            # rod 1 cannot reach
+            if not (root_square_a1 >= -arm_length_squared_times_rounding):
+                return 8*(None,)
+            a1 = z
         span_2_x = constant_part_3 + x  # rod 2
         span_2_y = constant_part_4 + y  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
-        # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding):
-            return 8*(None,)
+        if root_square_a2 > 0.0:
+            a2 = z + sqrt(root_square_a2)
+        else:
+            # rod 2 cannot reach
+            if not (root_square_a2 >= -arm_length_squared_times_rounding):
+                return 8*(None,)
+            a2 = z
         span_3_x = constant_part_5 + x  # rod 3
         span_3_y = constant_part_6 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
-        # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding):
-            return 8*(None,)
+        if root_square_a3 > 0.0:
+            a3 = z + sqrt(root_square_a3)
+        else:
+            # rod 3 cannot reach
+            if not (root_square_a3 >= -arm_length_squared_times_rounding):
+                return 8*(None,)
+            a3 = z
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        a1 = z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         rod_1_z = z - a1
         part_of_type2_rods_coplanar_above_above_above_3 = rod_1_z*rod_2_x*rod_3_y - rod_1_z*rod_2_y*rod_3_x
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
-        a3 = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
         rod_3_z = z - a3
         part_of_type2_rods_coplanar = rod_1_x*rod_2_y*rod_3_z - rod_1_y*rod_2_x*rod_3_z
         part_of_type2_rods_coplanar_above_above_above_4 = (
             part_of_type2_rods_coplanar + part_of_type2_rods_coplanar_above_above_above_3
         )
-        a2 = z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         rod_2_z = z - a2
         part_of_type2_rods_coplanar_above_above_above_2 = rod_1_x*rod_2_z*rod_3_y - rod_1_y*rod_2_z*rod_3_x
         type2_rods_coplanar = (
@@ -439,7 +457,7 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_below, axis_a2_below, axis_a3_below) if refusal_below_below_below == 0.0 else None),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_carriage_1, sigma_carriage_2, sigma_carriage_3 = signs
@@ -447,34 +465,43 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_y = constant_part_2 + y  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = arm_length_squared - span_1_x*span_1_x - span_1_y*span_1_y
-        # rod 1 cannot reach
-        if not (root_square_a1 >= -arm_length_squared_times_rounding):
-            return None
+        if root_square_a1 > 0.0:
+            a1 = z + sqrt(root_square_a1)*sigma_carriage_1
+        else:
+            # rod 1 cannot reach
+            if not (root_square_a1 >= -arm_length_squared_times_rounding):
+                return None
+            a1 = z
         span_2_x = constant_part_3 + x  # rod 2
         span_2_y = constant_part_4 + y  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = arm_length_squared - span_2_x*span_2_x - span_2_y*span_2_y
-        # rod 2 cannot reach
-        if not (root_square_a2 >= -arm_length_squared_times_rounding):
-            return None
+        if root_square_a2 > 0.0:
+            a2 = z + sqrt(root_square_a2)*sigma_carriage_2
+        else:
+            # rod 2 cannot reach
+            if not (root_square_a2 >= -arm_length_squared_times_rounding):
+                return None
+            a2 = z
         span_3_x = constant_part_5 + x  # rod 3
         span_3_y = constant_part_6 + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = arm_length_squared - span_3_x*span_3_x - span_3_y*span_3_y
-        # rod 3 cannot reach
-        if not (root_square_a3 >= -arm_length_squared_times_rounding):
-            return None
+        if root_square_a3 > 0.0:
+            a3 = z + sqrt(root_square_a3)*sigma_carriage_3
+        else:
+            # rod 3 cannot reach
+            if not (root_square_a3 >= -arm_length_squared_times_rounding):
+                return None
+            a3 = z
         rod_1_x = x - pivot_1_x
         rod_1_y = y - pivot_1_y
-        a1 = z + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)*sigma_carriage_1
         rod_1_z = z - a1
         rod_2_x = x - pivot_2_x
         rod_2_y = y - pivot_2_y
-        a2 = z + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         rod_2_z = z - a2
         rod_3_x = x - pivot_3_x
         rod_3_y = y - pivot_3_y
-        a3 = z + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
         rod_3_z = z - a3
         type2_rods_coplanar = (
             assembly_sign_by_constant_part
@@ -486,9 +513,6 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
-        axis_a1 = a1 + offset_a1
-        axis_a2 = a2 + offset_a2
-        axis_a3 = a3 + offset_a3
-        return (axis_a1, axis_a2, axis_a3)
+        return (a1 + offset_a1, a2 + offset_a2, a3 + offset_a3)
 
     return Unrolled(every_branch, branches, branch)

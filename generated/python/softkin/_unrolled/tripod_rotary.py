@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, root, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.tripod_rotary import Constants
 
 
@@ -86,9 +86,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return 8*(3.0,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
-        arm_length_1_squared_plus_divisor_a1_squared = arm_length_1_squared + divisor_a1*divisor_a1
         arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared = (
-            arm_length_1_squared_plus_divisor_a1_squared + y*y
+            arm_length_1_squared + divisor_a1*divisor_a1 + y*y
         )
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # kept as a product
@@ -103,9 +102,13 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return 8*(3.0,)
+        if sine_square_a1 > 0.0:
+            sin_swing_a1 = sqrt(sine_square_a1)
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return 8*(3.0,)
+            sin_swing_a1 = 0.0
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = constant_part_4 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
@@ -114,9 +117,9 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > constant_part_5):
             return 8*(3.0,)
-        arm_length_1_squared_plus_span_1_z_squared = arm_length_1_squared + span_1_z*span_1_z
-        part_of_sine_square_a2 = arm_length_1_squared_plus_span_1_z_squared + span_2_x*span_2_x
-        arm_length_2_squared_minus_part_of_sine_square_a2 = arm_length_2_squared - part_of_sine_square_a2
+        arm_length_2_squared_minus_part_of_sine_square_a2 = (
+            arm_length_2_squared - (arm_length_1_squared + span_1_z*span_1_z + span_2_x*span_2_x)
+        )
         divisor_a2 = effective_a2 if effective_a2 > constant_part_5 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
@@ -125,9 +128,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(arm_length_1*divisor_a2 + span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)
             /(swing_scale_a2*swing_scale_a2)
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 8*(3.0,)
+        if sine_square_a2 > 0.0:
+            sin_swing_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 8*(3.0,)
+            sin_swing_a2 = 0.0
         span_3_y = y - constant_part_4  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
@@ -142,9 +149,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(arm_length_1*divisor_a3 + span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)
             /(swing_scale_a3*swing_scale_a3)
         )
-        # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
-            return 8*(3.0,)
+        if sine_square_a3 > 0.0:
+            sin_swing_a3 = sqrt(sine_square_a3)
+        else:
+            # a3: out of reach
+            if not (sine_square_a3 >= -1e-12):
+                return 8*(3.0,)
+            sin_swing_a3 = 0.0
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(3.0,)
@@ -154,7 +165,6 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
         cos_swing_a2 = (span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
@@ -173,7 +183,6 @@ def unrolled(k: Constants) -> Unrolled:
             - arm_length_1*sin_a2
         )
         rod_2_z_outward = z - pivot_2_z
-        sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
         across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
         cos_swing_a3 = (span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
@@ -193,7 +202,6 @@ def unrolled(k: Constants) -> Unrolled:
         )
         rod_3_z_outward = z - pivot_3_z
         part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
         sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
         cos_swing_a1 = (
             (arm_length_2_squared - arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared)/swing_scale_a1
@@ -466,7 +474,7 @@ def unrolled(k: Constants) -> Unrolled:
             ),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         span_1_x = arm_1_radius_minus_constant_part + x  # rod 1
@@ -484,9 +492,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return 8*(None,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
-        arm_length_1_squared_plus_divisor_a1_squared = arm_length_1_squared + divisor_a1*divisor_a1
         arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared = (
-            arm_length_1_squared_plus_divisor_a1_squared + y*y
+            arm_length_1_squared + divisor_a1*divisor_a1 + y*y
         )
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # kept as a product
@@ -501,9 +508,13 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return 8*(None,)
+        if sine_square_a1 > 0.0:
+            sin_swing_a1 = sqrt(sine_square_a1)
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return 8*(None,)
+            sin_swing_a1 = 0.0
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = constant_part_4 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
@@ -512,9 +523,9 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > constant_part_5):
             return 8*(None,)
-        arm_length_1_squared_plus_span_1_z_squared = arm_length_1_squared + span_1_z*span_1_z
-        part_of_sine_square_a2 = arm_length_1_squared_plus_span_1_z_squared + span_2_x*span_2_x
-        arm_length_2_squared_minus_part_of_sine_square_a2 = arm_length_2_squared - part_of_sine_square_a2
+        arm_length_2_squared_minus_part_of_sine_square_a2 = (
+            arm_length_2_squared - (arm_length_1_squared + span_1_z*span_1_z + span_2_x*span_2_x)
+        )
         divisor_a2 = effective_a2 if effective_a2 > constant_part_5 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
@@ -523,9 +534,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(arm_length_1*divisor_a2 + span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)
             /(swing_scale_a2*swing_scale_a2)
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return 8*(None,)
+        if sine_square_a2 > 0.0:
+            sin_swing_a2 = sqrt(sine_square_a2)
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return 8*(None,)
+            sin_swing_a2 = 0.0
         span_3_y = y - constant_part_4  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
@@ -540,9 +555,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(arm_length_1*divisor_a3 + span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)
             /(swing_scale_a3*swing_scale_a3)
         )
-        # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
-            return 8*(None,)
+        if sine_square_a3 > 0.0:
+            sin_swing_a3 = sqrt(sine_square_a3)
+        else:
+            # a3: out of reach
+            if not (sine_square_a3 >= -1e-12):
+                return 8*(None,)
+            sin_swing_a3 = 0.0
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(None,)
@@ -552,7 +571,6 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
         cos_swing_a2 = (span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
@@ -571,7 +589,6 @@ def unrolled(k: Constants) -> Unrolled:
             - arm_length_1*sin_a2
         )
         rod_2_z_outward = z - pivot_2_z
-        sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)
         across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
         cos_swing_a3 = (span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
@@ -591,7 +608,6 @@ def unrolled(k: Constants) -> Unrolled:
         )
         rod_3_z_outward = z - pivot_3_z
         part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)
         sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
         cos_swing_a1 = (
             (arm_length_2_squared - arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared)/swing_scale_a1
@@ -765,7 +781,7 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a1_inward, axis_a2_inward, axis_a3_inward) if refusal_inward_inward_inward == 0.0 else None),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
@@ -792,9 +808,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(arm_length_1_times_2*divisor_a1 - constant_part_7 - divisor_a1*divisor_a1 - y*y)
             /(swing_scale_a1*swing_scale_a1)
         )
-        # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
-            return None
+        if sine_square_a1 > 0.0:
+            sin_swing_a1 = sqrt(sine_square_a1)*sigma_knee_1
+        else:
+            # a1: out of reach
+            if not (sine_square_a1 >= -1e-12):
+                return None
+            sin_swing_a1 = 0.0
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = constant_part_4 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
@@ -811,9 +831,13 @@ def unrolled(k: Constants) -> Unrolled:
             *(arm_length_1*divisor_a2 - constant_part_7 - span_1_z*span_1_z - span_2_x*span_2_x - span_2_y*span_2_y)
             /(swing_scale_a2*swing_scale_a2)
         )
-        # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
-            return None
+        if sine_square_a2 > 0.0:
+            sin_swing_a2 = -sqrt(sine_square_a2)*sigma_knee_2
+        else:
+            # a2: out of reach
+            if not (sine_square_a2 >= -1e-12):
+                return None
+            sin_swing_a2 = 0.0
         span_3_y = y - constant_part_4  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
@@ -828,11 +852,14 @@ def unrolled(k: Constants) -> Unrolled:
             *(arm_length_1*divisor_a3 - constant_part_7 - span_1_z*span_1_z - span_2_x*span_2_x - span_3_y*span_3_y)
             /(swing_scale_a3*swing_scale_a3)
         )
-        # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
-            return None
+        if sine_square_a3 > 0.0:
+            sin_swing_a3 = -sqrt(sine_square_a3)*sigma_knee_3
+        else:
+            # a3: out of reach
+            if not (sine_square_a3 >= -1e-12):
+                return None
+            sin_swing_a3 = 0.0
         cos_swing_a1 = (-constant_part_7 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
         pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
@@ -849,7 +876,6 @@ def unrolled(k: Constants) -> Unrolled:
         )
         rod_1_z = z - pivot_1_z
         cos_swing_a2 = (constant_part_7 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)/swing_scale_a2
-        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x = x - pivot_2_x
@@ -868,7 +894,6 @@ def unrolled(k: Constants) -> Unrolled:
         )
         rod_2_z = z - pivot_2_z
         cos_swing_a3 = (constant_part_7 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)/swing_scale_a3
-        sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
         pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x = x - pivot_3_x
@@ -905,9 +930,9 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return None
-        axis_a1 = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
-        axis_a2 = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
-        axis_a3 = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
-        return (axis_a1, axis_a2, axis_a3)
+        return (
+            offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN,
+            offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN,
+        )
 
     return Unrolled(every_branch, branches, branch)

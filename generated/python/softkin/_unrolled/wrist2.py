@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.wrist2 import Constants
 
 
@@ -105,10 +105,10 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a_negative, axis_b_negative) if refusal_negative == 0.0 else refusal_negative),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         _, ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
-        ref_a, _ = reference
+        ref_a, _ = 2*(0.0,) if reference is None else reference
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
@@ -125,23 +125,22 @@ def unrolled(k: Constants) -> Unrolled:
             direction_x_a_negative = direction_x_a_positive
             direction_y_a_negative = direction_y_a_positive
         axis_a = offset_a + arctan2(direction_y_a_positive, direction_x_a_positive)*RADIAN
-        axis_b_positive = offset_b + arctan2(radius_a, r33)*RADIAN
+        axis_b = offset_b + arctan2(radius_a, r33)*RADIAN
         direction_of_axis_a = (
             180.0 + axis_a
             if radius_a > 1e-11
             else offset_a + arctan2(direction_y_a_negative, direction_x_a_negative)*RADIAN
         )
-        axis_b_negative = offset_b_times_2 - axis_b_positive
         return (
-            (axis_a, axis_b_positive),
-            (direction_of_axis_a, axis_b_negative),
+            (axis_a, axis_b),
+            (direction_of_axis_a, offset_b_times_2 - axis_b),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         _, ((_, _, r13), (_, _, r23), (_, _, r33)) = frame
         (sigma_roll,) = signs
-        ref_a, _ = reference
+        ref_a, _ = 2*(0.0,) if reference is None else reference
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
@@ -153,9 +152,9 @@ def unrolled(k: Constants) -> Unrolled:
             free_a = (ref_a - offset_a)*DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
-        axis_a = offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN
-        a_radius_of_b = radius_a*sigma_roll
-        axis_b = offset_b + arctan2(a_radius_of_b, r33)*RADIAN
-        return (axis_a, axis_b)
+        return (
+            offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN,
+            offset_b + arctan2(radius_a*sigma_roll, r33)*RADIAN,
+        )
 
     return Unrolled(every_branch, branches, branch)

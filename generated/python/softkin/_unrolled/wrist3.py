@@ -9,7 +9,7 @@ from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
-    from softkin._types import Frame, Reals, Rotation, Vector
+    from softkin._types import PlainFrame, Reals, Rotation, Vector
     from softkin.wrist3 import Constants
 
 
@@ -90,9 +90,12 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a = 180.0 + axis_a_down
             direction_of_axis_c = 180.0 + axis_c_down
         else:
-            scaled_r22_before_c = direction_x_c_up*r22 + direction_y_c_up*r21
-            direction_y_a = -direction_x_c_up*r12 - direction_y_c_up*r11
-            direction_of_axis_a = offset_a + arctan2(direction_y_a + 0.0, scaled_r22_before_c + 0.0)/DEGREE
+            direction_of_axis_a = (
+                offset_a
+                + arctan2(
+                    -direction_x_c_up*r12 - direction_y_c_up*r11 + 0.0, direction_x_c_up*r22 + direction_y_c_up*r21 + 0.0,
+                )/DEGREE
+            )
             direction_of_axis_c = offset_c + arctan2(direction_y_c_up + 0.0, direction_x_c_up + 0.0)/DEGREE
         axis_a_up = direction_of_axis_a  # A: its turn
         if not -180.000000001 <= axis_a_up - open_a < 179.999999999:
@@ -116,10 +119,10 @@ def unrolled(k: Constants) -> Unrolled:
             ((axis_a_up, axis_b_up, axis_c_up) if refusal_up == 0.0 else refusal_up),
         )
 
-    def branches(frame: Frame, reference: Reals) -> tuple[Reals | None, ...]:
+    def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
-        _, _, ref_c = reference
+        _, _, ref_c = 3*(0.0,) if reference is None else reference
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
         # c: polar angle in the r31 and r32 equations; its reference where it is free
         if radius_c > 1e-11:
@@ -131,30 +134,35 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_c_down = sin(free_c)
             direction_x_c_up = direction_x_c_down
             direction_y_c_up = direction_y_c_down
-        scaled_r22_before_c = direction_x_c_down*r22 + direction_y_c_down*r21
-        direction_y_a = -direction_x_c_down*r12 - direction_y_c_down*r11
-        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN
-        axis_b_down = offset_b + arctan2(radius_c, r33)*RADIAN
+        axis_a = (
+            offset_a
+            + arctan2(
+                -direction_x_c_down*r12 - direction_y_c_down*r11, direction_x_c_down*r22 + direction_y_c_down*r21,
+            )*RADIAN
+        )
+        axis_b = offset_b + arctan2(radius_c, r33)*RADIAN
         axis_c = offset_c + arctan2(direction_y_c_down, direction_x_c_down)*RADIAN
         if radius_c > 1e-11:
             direction_of_axis_a = 180.0 + axis_a
             direction_of_axis_c = 180.0 + axis_c
         else:
-            scaled_r22_before_c = direction_x_c_up*r22 + direction_y_c_up*r21
-            direction_y_a = -direction_x_c_up*r12 - direction_y_c_up*r11
-            direction_of_axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN
+            direction_of_axis_a = (
+                offset_a
+                + arctan2(
+                    -direction_x_c_up*r12 - direction_y_c_up*r11, direction_x_c_up*r22 + direction_y_c_up*r21,
+                )*RADIAN
+            )
             direction_of_axis_c = offset_c + arctan2(direction_y_c_up, direction_x_c_up)*RADIAN
-        axis_b_up = offset_b_times_2 - axis_b_down
         return (
-            (axis_a, axis_b_down, axis_c),
-            (direction_of_axis_a, axis_b_up, direction_of_axis_c),
+            (axis_a, axis_b, axis_c),
+            (direction_of_axis_a, offset_b_times_2 - axis_b, direction_of_axis_c),
         )
 
-    def branch(frame: Frame, signs: Reals, reference: Reals) -> Reals | None:
+    def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         _, ((r11, r12, _), (r21, r22, _), (r31, r32, r33)) = frame
         (sigma_hand,) = signs
-        _, _, ref_c = reference
+        _, _, ref_c = 3*(0.0,) if reference is None else reference
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
         # c: polar angle in the r31 and r32 equations; its reference where it is free
         if radius_c > 1e-11:
@@ -164,12 +172,12 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
-        scaled_r22_before_c = direction_x_c*r22 + direction_y_c*r21
-        direction_y_a = -direction_x_c*r12 - direction_y_c*r11
-        axis_a = offset_a + arctan2(direction_y_a, scaled_r22_before_c)*RADIAN
-        c_radius_of_b = radius_c*sigma_hand
-        axis_b = offset_b + arctan2(c_radius_of_b, r33)*RADIAN
-        axis_c = offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN
-        return (axis_a, axis_b, axis_c)
+        axis_a = (
+            offset_a + arctan2(-direction_x_c*r12 - direction_y_c*r11, direction_x_c*r22 + direction_y_c*r21)*RADIAN
+        )
+        return (
+            axis_a, offset_b + arctan2(radius_c*sigma_hand, r33)*RADIAN,
+            offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN,
+        )
 
     return Unrolled(every_branch, branches, branch)

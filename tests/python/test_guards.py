@@ -1,0 +1,73 @@
+"""Guards: a condition that holds where a root is positive is asked only where it is not."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+
+from derive.emit.arms import Arms
+from derive.emit.guards import PositiveRoot, guarded
+from derive.emit.python_printer import ScalarPrinter
+from derive.emit.python_program import Refusals, item_lines
+from derive.program import Let, Require, Root, Status, real
+
+A, B, D, R, S, X, Y = (real(n) for n in "abdrsxy")
+SQUARE = Let(S, X * Y)
+ROOT = Let(A, R * Root(S))
+
+
+def asked(bound: sp.Expr) -> Require:
+    return Require(sp.Ge(S, bound), Status.UNREACHABLE, "out of reach")
+
+
+@pytest.mark.parametrize("bound", [sp.Float("-1e-12"), sp.Integer(0), -3 * D**2, -(D**2) - 2 * Y**4])
+def test_where_the_root_is_positive_it_is_not_asked(bound: sp.Expr) -> None:
+    square, choice, last = guarded([SQUARE, asked(bound), ROOT, Let(B, A + 1)])
+    assert square == SQUARE and last == Let(B, A + 1)
+    assert choice == Arms(sp.Gt(S, 0), (Let(A, R * PositiveRoot(S)),), (asked(bound), Let(A, sp.Integer(0))), (A,))
+
+
+@pytest.mark.parametrize("bound", [sp.Float("1e-12"), -D, D**2, -(D**3), Y - D**2])
+def test_a_bound_that_may_be_positive_is_always_asked(bound: sp.Expr) -> None:
+    body = (SQUARE, asked(bound), ROOT)
+    assert guarded(body) == body
+
+
+def test_what_is_known_of_a_constant_decides() -> None:
+    body = (SQUARE, asked(-D), ROOT)
+    assert isinstance(guarded(body, [Let(D, Y**2)])[1], Arms) and guarded(body, [Let(D, Y**3)]) == body
+
+
+def test_a_root_that_is_known_later_is_not_taken_before_the_condition() -> None:
+    body = (SQUARE, asked(sp.Integer(-1)), Let(B, sp.sin(X)), Let(A, B * Root(S)))
+    assert guarded(body) == body
+    between = (SQUARE, asked(sp.Integer(-1)), Require(sp.Gt(X, 1), Status.UNREACHABLE), ROOT)
+    assert isinstance(guarded(between)[1], Arms) and guarded(between)[2] == between[2]
+
+
+def test_another_comparison_is_always_asked() -> None:
+    for condition in (sp.Le(S, 1), sp.Gt(S, -1), sp.Ge(S + X, -1)):
+        body = (SQUARE, Require(condition, Status.UNREACHABLE), ROOT)
+        assert guarded(body) == body
+
+
+def test_as_it_is_written() -> None:
+    lines = item_lines(guarded([asked(sp.Float("-1e-12")), ROOT]), Refusals(lambda _: "None"), ScalarPrinter())
+    assert lines == [
+        "if s > 0.0:", "    a = sqrt(s)*r", "else:",
+        "    # out of reach", "    if not (s >= -1e-12):", "        return None", "    a = 0.0",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("square", [4.0, 0.0, -1e-13, -1.0, float("nan"), float("inf")])
+def test_it_does_what_the_statements_did(square: float) -> None:
+    """Run as text, before and after: not a number is refused by both."""
+    body = [asked(sp.Float("-1e-12")), ROOT]
+    answers = []
+    for items in (body, guarded(body)):
+        lines = [*item_lines(items, Refusals(lambda _: "None"), ScalarPrinter()), "return a"]
+        text = "\n".join(["from math import sqrt", "def f(s, r):", *(f"    {line}" for line in lines)])
+        scope: dict[str, object] = {}
+        exec(text, scope)
+        answers.append(scope["f"](square, -2.0))  # type: ignore[operator]
+    assert answers[0] == answers[1]
