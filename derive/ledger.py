@@ -10,6 +10,7 @@ import sympy as sp
 from derive.algebra import cosine, sine
 from derive.problem import Binding, Measure, Slope
 from derive.program import Let, Statement, real, rewritten
+from derive.verify import BrokenProgram
 
 
 class Ledger:
@@ -74,10 +75,13 @@ class Ledger:
 
     def _write(self, statements: Sequence[Statement], keep: set[sp.Symbol]) -> dict[sp.Symbol, sp.Symbol]:
         names: dict[sp.Symbol, sp.Symbol] = {}
+        values: dict[sp.Symbol, sp.Expr] = {}
         for statement in statements:
             if not isinstance(statement, Let):
                 self._statements.append(rewritten(statement, lambda e: e.xreplace(names)))
                 continue
+            if values.setdefault(statement.name, statement.value) != statement.value:
+                raise BrokenProgram(f"a step binds {statement.name} twice, to {values[statement.name]} and to {statement.value}")
             value = statement.value.xreplace(names)
             shared = self._by_value.get(value)
             if shared is not None and statement.name not in keep:

@@ -9,7 +9,7 @@ import sympy as sp
 
 from derive.algebra import cosine, reduce_units, sine
 from derive.frames import Factor
-from derive.program import Let, Statement
+from derive.program import DEGREE, Let, Statement
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ class Problem:
     def is_never_zero(self, expression: sp.Expr) -> bool:
         """Whether an expression of known names cannot vanish for any legal machine and pose."""
         reduced = self.reduce(expression)
-        return bool(reduced.is_nonzero)
+        return bool(reduced.is_nonzero or reduced.xreplace({DEGREE: sp.pi / 180}).is_nonzero)
 
     def with_equations(self, equations: tuple[Equation, ...]) -> Problem:
         """The same unknowns with other equations."""

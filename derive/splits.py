@@ -9,7 +9,7 @@ turn by turn, each entry under a name: `r13_from_a12` is r13 as seen from behind
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 
@@ -144,18 +144,43 @@ def rotations(problem: Problem) -> tuple[Equation, ...]:
     turns = list(problem.turns)
     lets: list[Let] = []
     entries = sp.Matrix(3, 3, list(problem.rotation))
-    front: list[str] = []
+    front, back = _Side("from", "base"), _Side("before", "flange")
     while not _unknown(problem, turns[0]):
         turn = turns.pop(0)
-        front += _word(problem, turn)
-        entries = _named(problem, _matrix(problem, turn, lets).T * entries, _suffix("from", front), lets)
-    back: list[str] = []
+        front = front.behind(_word(problem, turn), turn)
+        entries = _named(problem, _matrix(problem, turn, lets).T * entries, front.suffix, lets)
     while len(problem.columns) == 3 and not _unknown(problem, turns[-1]):
         turn = turns.pop()
-        back = _word(problem, turn) + back
-        word = _suffix("from", front) + _suffix("before", back)
-        entries = _named(problem, entries * _matrix(problem, turn, lets).T, word, lets)
+        back = back.behind(_word(problem, turn), turn)
+        entries = _named(problem, entries * _matrix(problem, turn, lets).T, front.suffix + back.suffix, lets)
     return _entry_equations(problem, turns, entries, tuple(lets))
+
+
+@dataclass(frozen=True)
+class _Side:
+    """The turns that have been taken away at one end."""
+
+    word: str
+    end: str
+    joints: tuple[str, ...] = ()
+    """Base first."""
+    fixed: int = 0
+    """How many oblique fixed turns there are since the last joint: one by right angles makes no new entries."""
+
+    def behind(self, joints: tuple[str, ...], turn: Factor) -> _Side:
+        """One turn further inwards."""
+        if joints:
+            return replace(self, joints=(*self.joints, *joints) if self.word == "from" else (*joints, *self.joints), fixed=0)
+        is_oblique = any(entry not in (-1, 0, 1) for entry in turn.matrix())
+        return replace(self, fixed=self.fixed + is_oblique)
+
+    @property
+    def suffix(self) -> str:
+        """What tells the entries there from all others: `_from_a12`, `_from_a12_turned`, `_before_flange`."""
+        turned = ("", "_turned", *(f"_turned_{n}" for n in range(2, self.fixed + 1)))
+        if self.joints:
+            return f"_{self.word}_{name_of(tuple((real(name), 1) for name in self.joints))}{turned[self.fixed]}"
+        return f"_{self.word}_{self.end}{turned[self.fixed - 1]}" if self.fixed else ""
 
 
 def _entry_equations(
@@ -191,15 +216,9 @@ def _unknown(problem: Problem, turn: Factor) -> bool:
     return bool(turn.amount.free_symbols & {*problem.angles, *problem.pending})
 
 
-def _word(problem: Problem, turn: Factor) -> list[str]:
+def _word(problem: Problem, turn: Factor) -> tuple[str, ...]:
     """The joints of a turn, for names."""
-    angles = [a for a in problem.units if a in turn.amount.free_symbols]
-    return [a.name for a in angles]
-
-
-def _suffix(word: str, joints: Sequence[str]) -> str:
-    terms = tuple((real(name), 1) for name in joints)
-    return f"_{word}_{name_of(terms)}" if joints else ""
+    return tuple(a.name for a in problem.units if a in turn.amount.free_symbols)
 
 
 def _matrix(problem: Problem, turn: Factor, lets: list[Let]) -> sp.Matrix:

@@ -23,7 +23,7 @@ def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: 
     """The two directions in which an arm meets a commanded point."""
     a, b, e = row
     naming = Naming(problem, equation.lets)
-    along, across = naming.named(a, f"along_{angle.name}"), naming.named(b, f"across_{angle.name}")
+    along, across = naming.named(a, f"point_x_{angle.name}"), naming.named(b, f"point_y_{angle.name}")
     distance = naming.length(f"distance_{angle.name}", along, across, f"{angle.name}: of the point from its axis")
     sigma = real(f"sigma_{angle.name}")
     scale = equation.scales.get(angle, problem.scale)

@@ -16,11 +16,13 @@ import pytest
 import sympy as sp
 
 from derive.algebra import cosine, sine
+from derive.ledger import Ledger
 from derive.passes import assemble
 from derive.problem import Problem
 from derive.program import Atan2, Let, Output, Status, real
 from derive.run import run
 from derive.solve import Derivation, Unsolved, solve
+from derive.verify import BrokenProgram
 from tests.derivation.execution import at, distance, problem, reference
 
 A1, A2, A3, HEADING = (real(n) for n in ("a1", "a2", "a3", "heading"))
@@ -217,6 +219,13 @@ def test_unsolved_says_what_is_left(name: str) -> None:
     with pytest.raises(Unsolved) as refusal:
         solve(case.problem, case.arguments, lambda angle: ())
     assert message in str(refusal.value)
+
+
+def test_a_step_binds_a_name_once() -> None:
+    ledger = Ledger()
+    ledger.append((Let(P, X), Let(P, X), Let(Q, P + Y)))
+    with pytest.raises(BrokenProgram, match="a step binds p twice, to x and to y"):
+        ledger.append((Let(P, X), Let(P, Y)))
 
 
 def test_turns_count_once_they_are_chosen() -> None:

@@ -81,6 +81,25 @@ def milling_head() -> Mechanism:
     return arm(joints=(P1, P2, P3, A4, A5), chain=chain, branches=(WRIST,), task=Task("xyz", Turning.DIRECTION))
 
 
+def crooked() -> Mechanism:
+    """An arm on an oblique base, with a crooked forearm and an oblique flange: twice turned by what is fixed at either end."""
+    base, flange = Ry(pi / 4) * Rx(pi / 6), Ry(pi / 6) * Rz(pi / 5) * Tx(ASIDE)
+    front = Rz(A1) * Tz(RISE) * Ry(A2) * Tx(L1) * Ry(A3) * Tx(L2) * Rz(pi / 7)
+    branches = (
+        branch("shoulder", L1 * cos(A2) + L2 * cos(A2 + A3), right=+1, left=-1),
+        branch("elbow", sin(A3), up=+1, down=-1),
+        WRIST,
+    )
+    chain = base * front * Rx(A4) * Ry(A5) * Rx(A6) * Tx(TIP) * flange
+    return arm(joints=(A1, A2, A3, A4, A5, A6), chain=chain, branches=branches)
+
+
+def skew_slides() -> Mechanism:
+    """Slides that are not square to each other, by angles whose sines are no surds."""
+    chain = Rz(pi / 6) * Tx(P1) * Rz(pi / 7) * Ty(P2) * Rx(pi / 5) * Tz(P3) * ZYZ * Tz(TIP)
+    return arm(joints=(P1, P2, P3, A4, A5, A6), chain=chain, branches=(WRIST,))
+
+
 def position_alone() -> Mechanism:
     """Three turns that carry something else: with the point off the flange as well."""
     chain = Rz(A1) * Tx(ASIDE) * Tz(RISE) * Rx(A2) * Ty(L1) * Rx(A3) * Ty(L2)
@@ -99,6 +118,8 @@ ARMS: dict[Callable[[], Mechanism], int] = {
     cylindrical: 2,
     three_parallel: 8,
     milling_head: 2,
+    crooked: 8,
+    skew_slides: 2,
     position_alone: 4,
 }
 """Every arm, and how many solutions a pose has."""
