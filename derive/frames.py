@@ -37,6 +37,10 @@ class Factor:
             rotation = self._rotation()
         return sp.ImmutableMatrix(sp.Matrix.vstack(rotation.row_join(position), sp.Matrix([[0, 0, 0, 1]])))
 
+    def inverse(self) -> Factor:
+        """The frame that undoes it: half a turn undoes itself."""
+        return self if self.motion is Motion.FLIP else Factor(self.motion, self.axis, -self.amount)
+
     def _rotation(self) -> sp.Matrix:
         if self.motion is Motion.FLIP:
             cosine, sine = 1 - 2 * self.amount, sp.Integer(0)

@@ -16,7 +16,7 @@ from derive.ledger import Ledger
 from derive.parallel import Sum, candidate_sums, resolve, substitute
 from derive.problem import Binding, Equation, Measure, Problem, Slope
 from derive.program import Statement
-from derive.splits import rotations
+from derive.rotations import rotations
 from derive.subproblems.affine import affine
 from derive.subproblems.affine_pair import affine_pair
 from derive.subproblems.pair import pair

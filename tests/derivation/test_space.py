@@ -94,6 +94,28 @@ def crooked() -> Mechanism:
     return arm(joints=(A1, A2, A3, A4, A5, A6), chain=chain, branches=branches)
 
 
+def round_shoulder() -> Mechanism:
+    """The first three axes meet, the last do not: an arm as it is seen from its flange."""
+    chain = Tz(RISE) * Rz(A1) * Ry(A2) * Rz(A3) * Tz(L1) * Ry(A4) * Tz(L2) * Ry(A5) * Tx(ASIDE) * Rz(A6) * Tz(TIP)
+    branches = (
+        branch("shoulder", sin(A2), right=+1, left=-1),
+        branch("elbow", sin(A4), up=+1, down=-1),
+        branch("flange", L1 * sin(A4 + A5) + L2 * sin(A5) - ASIDE, front=+1, back=-1),
+    )
+    return arm(joints=(A1, A2, A3, A4, A5, A6), chain=chain, branches=branches)
+
+
+def hand_of_three() -> Mechanism:
+    """Three parallel axes behind a shoulder, and one more: a collaborative arm as it is seen from its flange."""
+    chain = Rz(A1) * Ry(A2) * Tz(RISE) * Rx(A3) * Tz(L1) * Rx(A4) * Tz(L2) * Rx(A5) * Tx(ASIDE) * Rz(A6) * Tz(TIP)
+    branches = (
+        branch("flange", RISE * sin(A3 + A4 + A5) + L1 * sin(A4 + A5) + L2 * sin(A5), front=+1, back=-1),
+        branch("shoulder", cos(A2), right=+1, left=-1),
+        branch("elbow", sin(A4), up=+1, down=-1),
+    )
+    return arm(joints=(A1, A2, A3, A4, A5, A6), chain=chain, branches=branches)
+
+
 def skew_slides() -> Mechanism:
     """Slides that are not square to each other, by angles whose sines are no surds."""
     chain = Rz(pi / 6) * Tx(P1) * Rz(pi / 7) * Ty(P2) * Rx(pi / 5) * Tz(P3) * ZYZ * Tz(TIP)
@@ -119,6 +141,8 @@ ARMS: dict[Callable[[], Mechanism], int] = {
     three_parallel: 8,
     milling_head: 2,
     crooked: 8,
+    round_shoulder: 8,
+    hand_of_three: 8,
     skew_slides: 2,
     position_alone: 4,
 }
