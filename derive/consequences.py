@@ -3,7 +3,7 @@
 * difference: an unknown length that two equations hold affinely is eliminated between them;
 * elimination: an unknown length that one equation holds affinely with a number before it is put into the others;
 * squares: the sum of the squares of two equations, known parts on the other side, loses the angle that
-  turns both (the law of cosines).
+  turns both (the law of cosines); that of three, as a last resort, every angle that turns all of them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import sympy as sp
 
 from derive.algebra import linear_coefficients, reduce_units, split_known
 from derive.problem import Equation, Problem
-from derive.program import Let
 from derive.subproblems.naming import Naming
 
 
@@ -54,37 +53,34 @@ def eliminations(problem: Problem) -> tuple[Equation, ...]:
     return tuple(found)
 
 
-def squares(problem: Problem) -> tuple[Equation, ...]:
-    """Sums of squares of two equations; the known side is named as a length."""
-    found: list[Equation] = []
-    for pair in combinations(problem.equations, 2):
-        equation = _sum_of_squares(problem, *pair)
-        if equation is not None:
-            found.append(equation)
-    return tuple(found)
+def squares(problem: Problem, count: int = 2) -> tuple[Equation, ...]:
+    """Sums of squares of some equations; the known side is named as a length."""
+    found = [_sum_of_squares(problem, some) for some in combinations(problem.equations, count)]
+    return tuple(equation for equation in found if equation is not None)
 
 
-def _sum_of_squares(problem: Problem, first: Equation, second: Equation) -> Equation | None:
-    sides = [split_known(e.expression, problem.atoms()) for e in (first, second)]
+def squares_of_three(problem: Problem) -> tuple[Equation, ...]:
+    """Sums of squares of three equations."""
+    return squares(problem, 3)
+
+
+def _sum_of_squares(problem: Problem, equations: tuple[Equation, ...]) -> Equation | None:
+    sides = [split_known(e.expression, problem.atoms()) for e in equations]
     if any(moving == 0 or known == 0 or _has_plain_unknown(problem, moving) for moving, known in sides):
         return None
     moving = reduce_units(sum(m**2 for m, _ in sides), problem.units, problem.signs)
-    if not problem.unknowns_of(moving) or len(problem.unknowns_of(moving)) == len(_unknowns(problem, first, second)):
+    unknowns = {unknown for e in equations for unknown in problem.unknowns_of(e.expression)}
+    if len(problem.unknowns_of(moving)) not in range(1, len(unknowns)):
         return None
-    naming = Naming(problem, first.lets + second.lets)
-    x, y = (
+    naming = Naming(problem, tuple(let for e in equations for let in e.lets))
+    spanned = [
         naming.named(-known, f"wrist_{e.label}", "what the unknown links must span")
-        for e, (_, known) in zip((first, second), sides, strict=True)
-    )
-    reach = naming.length("reach", x, y)
-    lets: tuple[Let, ...] = naming.lets
-    return Equation(f"{first.label}² + {second.label}²", moving - reach**2, lets)
+        for e, (_, known) in zip(equations, sides, strict=True)
+    ]
+    reach = naming.length("reach", *spanned)
+    return Equation(" + ".join(f"{e.label}²" for e in equations), moving - reach**2, naming.lets)
 
 
 def _has_plain_unknown(problem: Problem, expression: sp.Expr) -> bool:
     """Whether an angle or a length occurs outside sines and cosines: its square would only be longer."""
     return bool(expression.free_symbols & {*problem.lengths, *problem.angles})
-
-
-def _unknowns(problem: Problem, first: Equation, second: Equation) -> set[sp.Symbol]:
-    return {*problem.unknowns_of(first.expression), *problem.unknowns_of(second.expression)}

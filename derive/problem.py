@@ -134,6 +134,13 @@ class Problem:
         reduced = self.reduce(expression)
         return bool(reduced.is_nonzero or reduced.xreplace({DEGREE: sp.pi / 180}).is_nonzero)
 
+    def is_positive(self, value: sp.Expr) -> bool:
+        """Whether a value is a positive multiple of a quantity whose negative mirror is excluded, or of several."""
+        if all(factor in self.positive for factor in sp.Mul.make_args(value)):
+            return True
+        ratios = [sp.cancel(value / quantity).xreplace({DEGREE: sp.pi / 180}) for quantity in self.positive]
+        return any(ratio.is_number and ratio.is_positive for ratio in ratios)
+
     def with_equations(self, equations: tuple[Equation, ...]) -> Problem:
         """The same unknowns with other equations."""
         return replace(self, equations=equations)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.arcs import within_reach
-from derive.consequences import differences, eliminations, squares
+from derive.consequences import differences, eliminations, squares, squares_of_three
 from derive.ledger import Ledger
 from derive.parallel import Sum, candidate_sums, resolve, substitute
 from derive.problem import Binding, Equation, Measure, Problem, Slope
@@ -94,6 +94,8 @@ def _next(
         better = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in wanted)
         if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
             return trial, better, (*sums, total)
+    if found is None and not problem.is_overdetermined:
+        found = _best([_candidates(problem, squares_of_three(problem))])
     if found is not None:
         return problem, found, sums
     raise Unsolved(_message(problem))

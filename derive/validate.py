@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from itertools import combinations
 
 import sympy as sp
 
+from derive.composite import name_of
 from derive.mechanism import ROTATION, DescriptionError, Interval, Joint, Mechanism, Parameter, Turning, X, Y, Z
 from derive.program import DEGREE
 
@@ -58,6 +60,11 @@ def _names(mechanism: Mechanism) -> Iterator[str]:
     for joint in mechanism.joints:
         if not _AXIS.match(joint.name):
             yield f"{joint.name!r} cannot name a joint: a capital letter, then letters and digits"
+    turning = [j.symbol for j in mechanism.joints if j.is_angle]
+    sums = {name_of(tuple((s, 1) for s in some)) for n in range(2, len(turning) + 1) for some in combinations(turning, n)}
+    for joint in mechanism.joints:
+        if joint.symbol.name in sums:
+            yield f"joint {joint.name!r} has the name of a sum of other joints: choose another"
 
 
 def _parameter(parameter: Parameter) -> Iterator[str]:

@@ -24,7 +24,7 @@ def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: 
     a, b, e = row
     naming = Naming(problem, equation.lets)
     along, across = naming.named(a, f"point_x_{angle.name}"), naming.named(b, f"point_y_{angle.name}")
-    distance = naming.length(f"distance_{angle.name}", along, across, f"{angle.name}: of the point from its axis")
+    distance = naming.length(f"distance_{angle.name}", along, across, note=f"{angle.name}: of the point from its axis")
     sigma = real(f"sigma_{angle.name}")
     scale = equation.scales.get(angle, problem.scale)
     slope = Slope(sigma, a * sine(angle) - b * cosine(angle), scale)
@@ -45,7 +45,7 @@ def _only_way(problem: Problem, slope: sp.Expr) -> sp.Expr | None:
     """The sign of the slope, where an equation says that it is, or is opposite to, a length that is positive."""
     for equation in problem.equations:
         for sign in (sp.Integer(1), sp.Integer(-1)):
-            if problem.reduce(equation.expression - sign * slope) in problem.positive:
+            if problem.is_positive(problem.reduce(equation.expression - sign * slope)):
                 return sign * -1
     return None
 

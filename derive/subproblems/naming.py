@@ -36,9 +36,9 @@ class Naming:
             return sign * self._bind(real(f"{word}_{name_of(terms)}"), sp.expand(sign * value), note)
         return self._bind(real(_portable(proposal)), value, note)
 
-    def length(self, proposal: str, first: sp.Expr, second: sp.Expr, note: str = "") -> sp.Expr:
-        """The name of root(first^2 + second^2)."""
-        return self._bind(real(proposal), Root(first**2 + second**2), note)
+    def length(self, proposal: str, *sides: sp.Expr, note: str = "") -> sp.Expr:
+        """The name of the root of the sum of squares."""
+        return self._bind(real(proposal), Root(sp.Add(*[side**2 for side in sides])), note)
 
     def _bind(self, name: sp.Symbol, value: sp.Expr, note: str) -> sp.Expr:
         for let in self._lets:
@@ -46,8 +46,12 @@ class Naming:
                 return let.name
             if let.value == -value:
                 return -let.name
-        self._lets.append(Let(name, value, note))
-        return name
+        free, number = name, 1
+        while any(let.name == free for let in self._lets):
+            number += 1
+            free = real(f"{name.name}_{number}")
+        self._lets.append(Let(free, value, note))
+        return free
 
 
 def _portable(proposal: str) -> str:

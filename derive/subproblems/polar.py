@@ -56,7 +56,7 @@ def _solve(
     naming = Naming(problem, along[0].lets + across[0].lets)
     a = naming.named(along[1], f"{along[0].label}_of_{angle.name}")
     b = naming.named(across[1], f"{across[0].label}_of_{angle.name}")
-    distance = naming.length(f"radius_{angle.name}", a, b, f"{angle.name}: direction and distance of a point")
+    distance = naming.length(f"radius_{angle.name}", a, b, note=f"{angle.name}: direction and distance of a point")
     note = f"{angle.name}: polar angle in the {along[0].label} and {across[0].label} equations"
     sigma, slope = sp.Integer(1), None
     if not _is_positive(problem, radius):
@@ -83,4 +83,4 @@ def _measure(problem: Problem, angle: sp.Symbol, radius: sp.Expr, distance: sp.E
 
 
 def _is_positive(problem: Problem, radius: sp.Expr) -> bool:
-    return all(f in problem.positive for f in sp.Mul.make_args(radius))
+    return problem.is_positive(radius)

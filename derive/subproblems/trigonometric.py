@@ -72,7 +72,7 @@ def _amplitude(
     if across == 0 and problem.is_never_zero(along):  # of either sign: sigma is then the sign of the sine
         return _Amplitude(naming, common * along, (), sp.Integer(1), sp.Integer(0), e, sine(angle), sp.Integer(1))
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
-    effective = naming.length(f"effective_{angle.name}", along, across, "effective length that the angle turns")
+    effective = naming.length(f"effective_{angle.name}", along, across, note="effective length that the angle turns")
     right = e.subs(along**2, effective**2 - across**2) if along.is_Symbol else e
     if problem.is_never_zero(along**2 + across**2):
         length = common * effective

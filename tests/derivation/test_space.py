@@ -116,6 +116,26 @@ def hand_of_three() -> Mechanism:
     return arm(joints=(A1, A2, A3, A4, A5, A6), chain=chain, branches=branches)
 
 
+def yawing_elbow() -> Mechanism:
+    """A shoulder that leans and an elbow that yaws: the distance alone leaves the elbow, the sum of three squares."""
+    chain = Rz(A1) * Tz(RISE) * Ry(A2) * Tx(L1) * Rz(A3) * Tx(L2) * Rx(A4) * Ry(A5) * Rx(A6) * Tx(TIP)
+    branches = (branch("shoulder", cos(A2), right=+1, left=-1), branch("elbow", sin(A3), up=+1, down=-1), WRIST)
+    return arm(joints=(A1, A2, A3, A4, A5, A6), chain=chain, branches=branches)
+
+
+def tilting_quill() -> Mechanism:
+    """A SCARA whose quill carries a tilt beside it: the point is named twice on the way to the elbow."""
+    chain = Tz(P1) * Rz(A1) * Tx(L1) * Rz(A2) * Tx(L2) * Rz(A4) * Tx(ASIDE) * Ry(A5) * Tx(RISE) * Rx(A6) * Tx(TIP)
+    branches = (branch("elbow", sin(A2), right=+1, left=-1), branch("tilt", cos(A5), first=+1, second=-1))
+    return arm(joints=(P1, A1, A2, A4, A5, A6), chain=chain, branches=branches)
+
+
+def leaning_boom() -> Mechanism:
+    """A boom that leans on a column: its reach is a share of its length, and as positive."""
+    chain = Rz(A1) * Tz(P1) * Ry(pi / 6) * Tx(P2) * ZYZ * Tz(TIP)
+    return arm(joints=(A1, P1, P2, A4, A5, A6), chain=chain, branches=(WRIST,), positive=(P2.symbol,))
+
+
 def skew_slides() -> Mechanism:
     """Slides that are not square to each other, by angles whose sines are no surds."""
     chain = Rz(pi / 6) * Tx(P1) * Rz(pi / 7) * Ty(P2) * Rx(pi / 5) * Tz(P3) * ZYZ * Tz(TIP)
@@ -143,6 +163,9 @@ ARMS: dict[Callable[[], Mechanism], int] = {
     crooked: 8,
     round_shoulder: 8,
     hand_of_three: 8,
+    yawing_elbow: 8,
+    tilting_quill: 4,
+    leaning_boom: 2,
     skew_slides: 2,
     position_alone: 4,
 }
