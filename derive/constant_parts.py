@@ -23,17 +23,20 @@ from derive.program import (
     Let,
     Output,
     Program,
+    Root,
     rewritten,
     symbols_of,
 )
 
 _WORDS = {
+    sp.Integer(1): "one",
+    sp.Rational(1, 2): "half",
     FREE_ANGLE: "free_angle",
     ROUNDING: "rounding",
     SHORTEST_LINK: "shortest_link",
     PLANE: "plane",
 }
-_READABLE = re.compile(r"(?=.{1,40}$)[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_READABLE = re.compile(r"(?=.{1,50}$)[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
 
 
 def constant_parts(programs: Iterable[Program], constants: Iterable[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
@@ -102,6 +105,10 @@ def words(value: sp.Expr) -> str:
         terms = sorted(value.args, key=lambda t: (t.could_extract_minus_sign(), t.is_Number, str(t)))
         said = [("_minus_" if t.could_extract_minus_sign() else "_plus_") + words(without_sign(t)) for t in terms]
         return "".join(said).removeprefix("_plus_")
+    if isinstance(value, Root):
+        return f"root_of_{words(value.args[0])}"
+    if value.is_Mul and value.args[0].is_Float and value.args[0] not in _WORDS:
+        return f"share_of_{words(sp.Mul(*value.args[1:]))}"
     if value.is_Mul:
         above, below = value.as_numer_denom()
         factors = sorted(sp.Mul.make_args(above), key=lambda f: (f.is_Number, str(f)))

@@ -54,11 +54,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     size_q6_of_q3 = k.size_q6_of_q3
-    constant_part = 1e-34*machine_scale*machine_scale
+    share_of_machine_scale_squared = 1e-34*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_squared_plus_a3_squared = a2*a2 + a3*a3
     size_q6_of_q3_times_rounding = 1e-12*size_q6_of_q3
-    constant_part_2 = 1.000000001*size_q6_of_q3
+    share_of_size_q6_of_q3 = 1.000000001*size_q6_of_q3
     a2_plus_a3 = a2 + a3
     a2_minus_a3 = a2 - a3
     scale_q3_squared = scale_q3*scale_q3
@@ -97,7 +97,7 @@ def unrolled(k: Constants) -> Unrolled:
             ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
                 return 8*(3.0,)
             ahead_q1 = 0.0
         # its reference where it is free
@@ -169,7 +169,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
@@ -317,7 +317,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
@@ -539,7 +539,7 @@ def unrolled(k: Constants) -> Unrolled:
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
@@ -681,7 +681,7 @@ def unrolled(k: Constants) -> Unrolled:
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
@@ -936,7 +936,7 @@ def unrolled(k: Constants) -> Unrolled:
             ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
                 return 8*(None,)
             ahead_q1 = 0.0
         # its reference where it is free
@@ -1008,7 +1008,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
@@ -1138,7 +1138,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
@@ -1290,7 +1290,7 @@ def unrolled(k: Constants) -> Unrolled:
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
@@ -1420,7 +1420,7 @@ def unrolled(k: Constants) -> Unrolled:
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
@@ -1609,7 +1609,7 @@ def unrolled(k: Constants) -> Unrolled:
             ahead_q1 = -sqrt(ahead_squared_q1)*sigma_shoulder
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
                 return None
             ahead_q1 = 0.0
         # its reference where it is free
@@ -1661,7 +1661,7 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > constant_part_2:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:

@@ -75,9 +75,9 @@ def unrolled(k: Constants) -> Unrolled:
     cos_azimuth_3_times_inner_arm_3 = inner_arm_3*cos_azimuth_3
     inner_arm_3_times_sin_azimuth_3 = inner_arm_3*sin_azimuth_3
     constant_part_7 = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
-    constant_part_8 = inner_arm_1*inner_arm_1 - outer_arm_1*outer_arm_1
-    constant_part_9 = inner_arm_2*inner_arm_2 - outer_arm_2*outer_arm_2
-    constant_part_10 = inner_arm_3*inner_arm_3 - outer_arm_3*outer_arm_3
+    inner_arm_1_squared_minus_outer_arm_1_squared = inner_arm_1*inner_arm_1 - outer_arm_1*outer_arm_1
+    inner_arm_2_squared_minus_outer_arm_2_squared = inner_arm_2*inner_arm_2 - outer_arm_2*outer_arm_2
+    inner_arm_3_squared_minus_outer_arm_3_squared = inner_arm_3*inner_arm_3 - outer_arm_3*outer_arm_3
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -664,8 +664,14 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (divisor_a1*inner_arm_1_times_2 - constant_part_8 - span_1_x*span_1_x - span_1_y*span_1_y - z*z)
-            *(constant_part_8 + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
+            (
+                inner_arm_1_squared_minus_outer_arm_1_squared + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x
+                + span_1_y*span_1_y + z*z
+            )
+            *(
+                divisor_a1*inner_arm_1_times_2 - inner_arm_1_squared_minus_outer_arm_1_squared - span_1_x*span_1_x
+                - span_1_y*span_1_y - z*z
+            )
             /(swing_scale_a1*swing_scale_a1)
         )
         if sine_square_a1 > 0.0:
@@ -686,8 +692,14 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (divisor_a2*inner_arm_2_times_2 - constant_part_9 - span_2_x*span_2_x - span_2_y*span_2_y - z*z)
-            *(constant_part_9 + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
+            (
+                inner_arm_2_squared_minus_outer_arm_2_squared + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x
+                + span_2_y*span_2_y + z*z
+            )
+            *(
+                divisor_a2*inner_arm_2_times_2 - inner_arm_2_squared_minus_outer_arm_2_squared - span_2_x*span_2_x
+                - span_2_y*span_2_y - z*z
+            )
             /(swing_scale_a2*swing_scale_a2)
         )
         if sine_square_a2 > 0.0:
@@ -708,8 +720,14 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (divisor_a3*inner_arm_3_times_2 - constant_part_10 - span_3_x*span_3_x - span_3_y*span_3_y - z*z)
-            *(constant_part_10 + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
+            (
+                inner_arm_3_squared_minus_outer_arm_3_squared + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x
+                + span_3_y*span_3_y + z*z
+            )
+            *(
+                divisor_a3*inner_arm_3_times_2 - inner_arm_3_squared_minus_outer_arm_3_squared - span_3_x*span_3_x
+                - span_3_y*span_3_y - z*z
+            )
             /(swing_scale_a3*swing_scale_a3)
         )
         if sine_square_a3 > 0.0:
@@ -719,7 +737,10 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a3 >= -1e-12):
                 return None
             sin_swing_a3 = 0.0
-        cos_swing_a1 = (constant_part_8 + span_1_x*span_1_x + span_1_y*span_1_y + z*z)/swing_scale_a1
+        cos_swing_a1 = (
+            (inner_arm_1_squared_minus_outer_arm_1_squared + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
+            /swing_scale_a1
+        )
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
         pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x = x - pivot_1_x
@@ -728,7 +749,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
         minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
         rod_1_z = minus_pivot_1_z + z
-        cos_swing_a2 = (constant_part_9 + span_2_x*span_2_x + span_2_y*span_2_y + z*z)/swing_scale_a2
+        cos_swing_a2 = (
+            (inner_arm_2_squared_minus_outer_arm_2_squared + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
+            /swing_scale_a2
+        )
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x = x - pivot_2_x
@@ -737,7 +761,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
         rod_2_z = minus_pivot_2_z + z
-        cos_swing_a3 = (constant_part_10 + span_3_x*span_3_x + span_3_y*span_3_y + z*z)/swing_scale_a3
+        cos_swing_a3 = (
+            (inner_arm_3_squared_minus_outer_arm_3_squared + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
+            /swing_scale_a3
+        )
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x = x - pivot_3_x

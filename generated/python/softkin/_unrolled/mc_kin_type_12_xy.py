@@ -39,9 +39,9 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_times_2 = 2.0*link_length_1
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-    constant_part = link_length_1*link_length_1 - link_length_2*link_length_2
-    constant_part_2 = link_length_1*link_length_3/link_length_2
-    constant_part_3 = link_length_3*swap_xy/link_length_2
+    link_length_1_squared_minus_link_length_2_squared = link_length_1*link_length_1 - link_length_2*link_length_2
+    link_length_1_times_link_length_3_by_link_length_2 = link_length_1*link_length_3/link_length_2
+    link_length_3_times_swap_xy_by_link_length_2 = link_length_3*swap_xy/link_length_2
     link_length_3_by_link_length_2 = link_length_3/link_length_2
     link_length_1_times_link_length_2 = link_length_1*link_length_2
     link_length_1_times_link_length_3 = link_length_1*link_length_3
@@ -49,34 +49,34 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_4_squared = link_length_4*link_length_4
     link_length_1_squared = link_length_1*link_length_1
     link_length_5_squared = link_length_5*link_length_5
-    constant_part_4 = link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
-    constant_part_5 = 2.0*link_length_1*link_length_1*link_length_3/link_length_2
+    constant_part = link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
+    constant_part_2 = 2.0*link_length_1*link_length_1*link_length_3/link_length_2
     link_length_5_times_2 = 2.0*link_length_5
-    constant_part_6 = 2.0*link_length_1*link_length_3/link_length_2
+    constant_part_3 = 2.0*link_length_1*link_length_3/link_length_2
     link_length_2_squared = link_length_2*link_length_2
-    constant_part_7 = link_length_1*link_length_1*link_length_2*link_length_2
-    constant_part_8 = link_length_1*link_length_1*link_length_3*link_length_3
-    constant_part_9 = link_length_2*link_length_2*link_length_5*link_length_5
-    constant_part_10 = link_length_2*link_length_2*link_length_4*link_length_4
-    constant_part_11 = 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-    constant_part_12 = 2.0*link_length_2*link_length_2*link_length_5
-    constant_part_13 = 2.0*link_length_1*link_length_2*link_length_2
-    constant_part_14 = 2.0*link_length_1*link_length_2*link_length_3
-    constant_part_15 = link_length_2*link_length_2*link_length_2*link_length_2
+    link_length_1_squared_times_link_length_2_squared = link_length_1*link_length_1*link_length_2*link_length_2
+    link_length_1_squared_times_link_length_3_squared = link_length_1*link_length_1*link_length_3*link_length_3
+    link_length_2_squared_times_link_length_5_squared = link_length_2*link_length_2*link_length_5*link_length_5
+    link_length_2_squared_times_link_length_4_squared = link_length_2*link_length_2*link_length_4*link_length_4
+    constant_part_4 = 2.0*link_length_1*link_length_1*link_length_2*link_length_3
+    link_length_2_squared_times_link_length_5_times_2 = 2.0*link_length_2*link_length_2*link_length_5
+    link_length_1_times_link_length_2_squared_times_2 = 2.0*link_length_1*link_length_2*link_length_2
+    constant_part_5 = 2.0*link_length_1*link_length_2*link_length_3
+    constant_part_6 = link_length_2*link_length_2*link_length_2*link_length_2
     link_length_2_times_swap_xy = link_length_2*swap_xy
     swap_xy_times_2 = 2.0*swap_xy
     swap_xy_squared_times_2 = 2.0*swap_xy*swap_xy
     swap_xy_squared_times_4 = 4.0*swap_xy*swap_xy
     swap_xy_times_4 = 4.0*swap_xy
-    constant_part_16 = assembly_sign*link_length_3/link_length_2
-    constant_part_17 = (
+    assembly_sign_times_link_length_3_by_link_length_2 = assembly_sign*link_length_3/link_length_2
+    constant_part_7 = (
         link_length_1*link_length_1*link_length_2*link_length_2
         + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
         + link_length_1*link_length_1*link_length_3*link_length_3
         + link_length_2*link_length_2*link_length_5*link_length_5
         - link_length_2*link_length_2*link_length_4*link_length_4
     )
-    constant_part_18 = (
+    constant_part_8 = (
         link_length_1*link_length_1 + link_length_5*link_length_5
         + 2.0*link_length_1*link_length_1*link_length_3/link_length_2
         + link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
@@ -120,13 +120,15 @@ def unrolled(k: Constants) -> Unrolled:
                 return 4*(3.0,)
             minus_sin_swing_a1 = 0.0
         minus_sin_swing_a1_times_span_upper_y_by_divisor_a1 = minus_sin_swing_a1*span_upper_y/divisor_a1
-        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
+        cos_swing_a1 = (-link_length_1_squared_minus_link_length_2_squared - divisor_a1*divisor_a1)/swing_scale_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - minus_sin_swing_a1_times_span_upper_y_by_divisor_a1
         minus_sin_swing_a1_times_span_upper_x_by_divisor_a1 = minus_sin_swing_a1*span_upper_x/divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + minus_sin_swing_a1_times_span_upper_x_by_divisor_a1
-        part_of_span_rear_x = constant_part_3*x - constant_part_3*y
+        part_of_span_rear_x = (
+            link_length_3_times_swap_xy_by_link_length_2*x - link_length_3_times_swap_xy_by_link_length_2*y
+        )
         span_rear_x = part_of_span_rear_x - link_length_3_by_link_length_2*x  # rod rear
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
         along_a2 = (
@@ -151,11 +153,11 @@ def unrolled(k: Constants) -> Unrolled:
             link_length_5_squared + (link_length_1_squared - (link_length_4_squared - span_rear_x*span_rear_x))
             + span_rear_y*span_rear_y
         )
-        part_of_cos_swing_a2_left_left_4 = constant_part_5 + (constant_part_4 + part_of_cos_swing_a2_left_left_2)
+        part_of_cos_swing_a2_left_left_4 = constant_part_2 + (constant_part + part_of_cos_swing_a2_left_left_2)
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_swing_a2 = (
             (
-                constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
+                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
                 + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
                 - part_of_cos_swing_a2_left_left_4
             )
@@ -163,28 +165,35 @@ def unrolled(k: Constants) -> Unrolled:
         )
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         part_of_sine_square_a2_left_left_3 = (
-            constant_part_9 + (constant_part_8 + (constant_part_7 + link_length_2_squared*span_rear_x*span_rear_x))
+            link_length_2_squared_times_link_length_5_squared
+            + (
+                link_length_1_squared_times_link_length_3_squared
+                + (link_length_1_squared_times_link_length_2_squared + link_length_2_squared*span_rear_x*span_rear_x)
+            )
         )
         part_of_sine_square_a2_left_left_6 = (
-            constant_part_11
+            constant_part_4
             - (
-                constant_part_10
+                link_length_2_squared_times_link_length_4_squared
                 - (part_of_sine_square_a2_left_left_3 + link_length_2_squared*span_rear_y*span_rear_y)
             )
         )
         # kept as a product
         sine_square_a2 = (
             (
-                constant_part_12*divisor_a2 + constant_part_13*span_rear_y*cos_a1
-                + constant_part_13*span_rear_x*sin_a1 + constant_part_14*span_rear_y*cos_a1
-                + constant_part_14*span_rear_x*sin_a1 - part_of_sine_square_a2_left_left_6
+                part_of_sine_square_a2_left_left_6 + divisor_a2*link_length_2_squared_times_link_length_5_times_2
+                - constant_part_5*span_rear_y*cos_a1 - constant_part_5*span_rear_x*sin_a1
+                - link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
+                - link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
             )
             *(
-                part_of_sine_square_a2_left_left_6 + constant_part_12*divisor_a2 - constant_part_13*span_rear_y*cos_a1
-                - constant_part_13*span_rear_x*sin_a1 - constant_part_14*span_rear_y*cos_a1
-                - constant_part_14*span_rear_x*sin_a1
+                divisor_a2*link_length_2_squared_times_link_length_5_times_2 + constant_part_5*span_rear_y*cos_a1
+                + constant_part_5*span_rear_x*sin_a1
+                + link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
+                + link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
+                - part_of_sine_square_a2_left_left_6
             )
-            /(constant_part_15*swing_scale_a2*swing_scale_a2)
+            /(constant_part_6*swing_scale_a2*swing_scale_a2)
         )
         minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         across_a2_times_minus_sin_swing_a2_by_divisor_a2 = across_a2*minus_sin_swing_a2/divisor_a2
@@ -209,9 +218,9 @@ def unrolled(k: Constants) -> Unrolled:
         if sine_square_a2 >= -1e-12 and axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
-            part_of_pivot_rear_x = constant_part_2*sin_a1 + link_length_1*sin_a1
+            part_of_pivot_rear_x = link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
             pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
-            part_of_pivot_rear_y = constant_part_2*cos_a1 + link_length_1*cos_a1
+            part_of_pivot_rear_y = link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
             pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
             part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
             rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
@@ -220,7 +229,7 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
             type2_arms_aligned_left = (
-                constant_part_16
+                assembly_sign_times_link_length_3_by_link_length_2
                 *(
                     (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3)*rod_1_y
@@ -257,7 +266,7 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
             type2_arms_aligned_right = (
-                constant_part_16
+                assembly_sign_times_link_length_3_by_link_length_2
                 *(
                     (y - (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
@@ -312,7 +321,7 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_swing_a2 = (
             (
-                constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
+                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
                 + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
                 - part_of_cos_swing_a2_left_left_4
             )
@@ -322,16 +331,19 @@ def unrolled(k: Constants) -> Unrolled:
         # kept as a product
         sine_square_a2 = (
             (
-                constant_part_12*divisor_a2 + constant_part_13*span_rear_y*cos_a1
-                + constant_part_13*span_rear_x*sin_a1 + constant_part_14*span_rear_y*cos_a1
-                + constant_part_14*span_rear_x*sin_a1 - part_of_sine_square_a2_left_left_6
+                part_of_sine_square_a2_left_left_6 + divisor_a2*link_length_2_squared_times_link_length_5_times_2
+                - constant_part_5*span_rear_y*cos_a1 - constant_part_5*span_rear_x*sin_a1
+                - link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
+                - link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
             )
             *(
-                part_of_sine_square_a2_left_left_6 + constant_part_12*divisor_a2 - constant_part_13*span_rear_y*cos_a1
-                - constant_part_13*span_rear_x*sin_a1 - constant_part_14*span_rear_y*cos_a1
-                - constant_part_14*span_rear_x*sin_a1
+                divisor_a2*link_length_2_squared_times_link_length_5_times_2 + constant_part_5*span_rear_y*cos_a1
+                + constant_part_5*span_rear_x*sin_a1
+                + link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
+                + link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
+                - part_of_sine_square_a2_left_left_6
             )
-            /(constant_part_15*swing_scale_a2*swing_scale_a2)
+            /(constant_part_6*swing_scale_a2*swing_scale_a2)
         )
         minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right = across_a2*minus_sin_swing_a2/divisor_a2
@@ -362,9 +374,13 @@ def unrolled(k: Constants) -> Unrolled:
         if sine_square_a2 >= -1e-12 and axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
-            part_of_pivot_rear_x_left_right = constant_part_2*sin_a1 + link_length_1*sin_a1
+            part_of_pivot_rear_x_left_right = (
+                link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
+            )
             pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_left  # rod rear
-            part_of_pivot_rear_y_left_right = constant_part_2*cos_a1 + link_length_1*cos_a1
+            part_of_pivot_rear_y_left_right = (
+                link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
+            )
             pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
             part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
             rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
@@ -373,7 +389,7 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
             type2_arms_aligned_left = (
-                constant_part_16
+                assembly_sign_times_link_length_3_by_link_length_2
                 *(
                     (
                         y - (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)/link_length_3
@@ -414,7 +430,7 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
             type2_arms_aligned_right = (
-                constant_part_16
+                assembly_sign_times_link_length_3_by_link_length_2
                 *(
                     (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
@@ -485,13 +501,15 @@ def unrolled(k: Constants) -> Unrolled:
                 return 4*(None,)
             minus_sin_swing_a1 = 0.0
         minus_sin_swing_a1_times_span_upper_y_by_divisor_a1 = minus_sin_swing_a1*span_upper_y/divisor_a1
-        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
+        cos_swing_a1 = (-link_length_1_squared_minus_link_length_2_squared - divisor_a1*divisor_a1)/swing_scale_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - minus_sin_swing_a1_times_span_upper_y_by_divisor_a1
         minus_sin_swing_a1_times_span_upper_x_by_divisor_a1 = minus_sin_swing_a1*span_upper_x/divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + minus_sin_swing_a1_times_span_upper_x_by_divisor_a1
-        part_of_span_rear_x = constant_part_3*x - constant_part_3*y
+        part_of_span_rear_x = (
+            link_length_3_times_swap_xy_by_link_length_2*x - link_length_3_times_swap_xy_by_link_length_2*y
+        )
         span_rear_x = part_of_span_rear_x - link_length_3_by_link_length_2*x  # rod rear
         link_length_2_times_span_rear_x = link_length_2*span_rear_x
         along_a2 = (
@@ -516,11 +534,11 @@ def unrolled(k: Constants) -> Unrolled:
             link_length_5_squared + (link_length_1_squared - (link_length_4_squared - span_rear_x*span_rear_x))
             + span_rear_y*span_rear_y
         )
-        part_of_cos_swing_a2_left_left_4 = constant_part_5 + (constant_part_4 + part_of_cos_swing_a2_left_left_2)
+        part_of_cos_swing_a2_left_left_4 = constant_part_2 + (constant_part + part_of_cos_swing_a2_left_left_2)
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_swing_a2 = (
             (
-                constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
+                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
                 + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
                 - part_of_cos_swing_a2_left_left_4
             )
@@ -528,28 +546,35 @@ def unrolled(k: Constants) -> Unrolled:
         )
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         part_of_sine_square_a2_left_left_3 = (
-            constant_part_9 + (constant_part_8 + (constant_part_7 + link_length_2_squared*span_rear_x*span_rear_x))
+            link_length_2_squared_times_link_length_5_squared
+            + (
+                link_length_1_squared_times_link_length_3_squared
+                + (link_length_1_squared_times_link_length_2_squared + link_length_2_squared*span_rear_x*span_rear_x)
+            )
         )
         part_of_sine_square_a2_left_left_6 = (
-            constant_part_11
+            constant_part_4
             - (
-                constant_part_10
+                link_length_2_squared_times_link_length_4_squared
                 - (part_of_sine_square_a2_left_left_3 + link_length_2_squared*span_rear_y*span_rear_y)
             )
         )
         # kept as a product
         sine_square_a2 = (
             (
-                constant_part_12*divisor_a2 + constant_part_13*span_rear_y*cos_a1
-                + constant_part_13*span_rear_x*sin_a1 + constant_part_14*span_rear_y*cos_a1
-                + constant_part_14*span_rear_x*sin_a1 - part_of_sine_square_a2_left_left_6
+                part_of_sine_square_a2_left_left_6 + divisor_a2*link_length_2_squared_times_link_length_5_times_2
+                - constant_part_5*span_rear_y*cos_a1 - constant_part_5*span_rear_x*sin_a1
+                - link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
+                - link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
             )
             *(
-                part_of_sine_square_a2_left_left_6 + constant_part_12*divisor_a2 - constant_part_13*span_rear_y*cos_a1
-                - constant_part_13*span_rear_x*sin_a1 - constant_part_14*span_rear_y*cos_a1
-                - constant_part_14*span_rear_x*sin_a1
+                divisor_a2*link_length_2_squared_times_link_length_5_times_2 + constant_part_5*span_rear_y*cos_a1
+                + constant_part_5*span_rear_x*sin_a1
+                + link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
+                + link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
+                - part_of_sine_square_a2_left_left_6
             )
-            /(constant_part_15*swing_scale_a2*swing_scale_a2)
+            /(constant_part_6*swing_scale_a2*swing_scale_a2)
         )
         minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         across_a2_times_minus_sin_swing_a2_by_divisor_a2 = across_a2*minus_sin_swing_a2/divisor_a2
@@ -571,9 +596,9 @@ def unrolled(k: Constants) -> Unrolled:
         if sine_square_a2 >= -1e-12 and effective_a2 > link_length_5_times_shortest_link:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
-            part_of_pivot_rear_x = constant_part_2*sin_a1 + link_length_1*sin_a1
+            part_of_pivot_rear_x = link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
             pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left_left  # rod rear
-            part_of_pivot_rear_y = constant_part_2*cos_a1 + link_length_1*cos_a1
+            part_of_pivot_rear_y = link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
             pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left_left  # rod rear
             part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
             rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
@@ -582,7 +607,7 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
             type2_arms_aligned_left = (
-                constant_part_16
+                assembly_sign_times_link_length_3_by_link_length_2
                 *(
                     (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3)*rod_1_y
@@ -613,7 +638,7 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
             type2_arms_aligned_right = (
-                constant_part_16
+                assembly_sign_times_link_length_3_by_link_length_2
                 *(
                     (y - (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
@@ -663,7 +688,7 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_swing_a2 = (
             (
-                constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
+                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
                 + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
                 - part_of_cos_swing_a2_left_left_4
             )
@@ -673,16 +698,19 @@ def unrolled(k: Constants) -> Unrolled:
         # kept as a product
         sine_square_a2 = (
             (
-                constant_part_12*divisor_a2 + constant_part_13*span_rear_y*cos_a1
-                + constant_part_13*span_rear_x*sin_a1 + constant_part_14*span_rear_y*cos_a1
-                + constant_part_14*span_rear_x*sin_a1 - part_of_sine_square_a2_left_left_6
+                part_of_sine_square_a2_left_left_6 + divisor_a2*link_length_2_squared_times_link_length_5_times_2
+                - constant_part_5*span_rear_y*cos_a1 - constant_part_5*span_rear_x*sin_a1
+                - link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
+                - link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
             )
             *(
-                part_of_sine_square_a2_left_left_6 + constant_part_12*divisor_a2 - constant_part_13*span_rear_y*cos_a1
-                - constant_part_13*span_rear_x*sin_a1 - constant_part_14*span_rear_y*cos_a1
-                - constant_part_14*span_rear_x*sin_a1
+                divisor_a2*link_length_2_squared_times_link_length_5_times_2 + constant_part_5*span_rear_y*cos_a1
+                + constant_part_5*span_rear_x*sin_a1
+                + link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
+                + link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
+                - part_of_sine_square_a2_left_left_6
             )
-            /(constant_part_15*swing_scale_a2*swing_scale_a2)
+            /(constant_part_6*swing_scale_a2*swing_scale_a2)
         )
         minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
         across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right = across_a2*minus_sin_swing_a2/divisor_a2
@@ -704,9 +732,13 @@ def unrolled(k: Constants) -> Unrolled:
         if sine_square_a2 >= -1e-12 and effective_a2 > link_length_5_times_shortest_link:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
-            part_of_pivot_rear_x_left_right = constant_part_2*sin_a1 + link_length_1*sin_a1
+            part_of_pivot_rear_x_left_right = (
+                link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
+            )
             pivot_rear_x_left = part_of_pivot_rear_x_left_right - link_length_5*cos_a2_right_left  # rod rear
-            part_of_pivot_rear_y_left_right = constant_part_2*cos_a1 + link_length_1*cos_a1
+            part_of_pivot_rear_y_left_right = (
+                link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
+            )
             pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_left  # rod rear
             part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
             rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
@@ -715,7 +747,7 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
             type2_arms_aligned_left = (
-                constant_part_16
+                assembly_sign_times_link_length_3_by_link_length_2
                 *(
                     (
                         y - (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)/link_length_3
@@ -750,7 +782,7 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
             type2_arms_aligned_right = (
-                constant_part_16
+                assembly_sign_times_link_length_3_by_link_length_2
                 *(
                     (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
@@ -831,9 +863,13 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a1 >= -1e-12):
                 return None
             minus_sin_swing_a1 = 0.0
-        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
+        cos_swing_a1 = (-link_length_1_squared_minus_link_length_2_squared - divisor_a1*divisor_a1)/swing_scale_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 - minus_sin_swing_a1*span_upper_y/divisor_a1
-        span_rear_x = constant_part_3*x - constant_part_3*y - link_length_3_by_link_length_2*x  # rod rear
+        # rod rear
+        span_rear_x = (
+            link_length_3_times_swap_xy_by_link_length_2*x - link_length_3_by_link_length_2*x
+            - link_length_3_times_swap_xy_by_link_length_2*y
+        )
         along_a2 = (
             (
                 link_length_2*span_rear_x - link_length_1_times_link_length_2*sin_a1
@@ -842,7 +878,11 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_2
         )
         cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 + minus_sin_swing_a1*span_upper_x/divisor_a1
-        span_rear_y = constant_part_3*y - constant_part_3*x - link_length_3_by_link_length_2*y  # rod rear
+        # rod rear
+        span_rear_y = (
+            link_length_3_times_swap_xy_by_link_length_2*y - link_length_3_by_link_length_2*y
+            - link_length_3_times_swap_xy_by_link_length_2*x
+        )
         across_a2 = (
             (
                 link_length_1_times_link_length_2*cos_a1 + link_length_1_times_link_length_3*cos_a1
@@ -859,18 +899,20 @@ def unrolled(k: Constants) -> Unrolled:
         # kept as a product
         sine_square_a2 = (
             (
-                constant_part_12*divisor_a2 + constant_part_13*span_rear_y*cos_a1
-                + constant_part_13*span_rear_x*sin_a1 + constant_part_14*span_rear_y*cos_a1
-                + constant_part_14*span_rear_x*sin_a1 - constant_part_17
-                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
+                constant_part_7 + divisor_a2*link_length_2_squared_times_link_length_5_times_2
+                + link_length_2_squared*span_rear_x*span_rear_x + link_length_2_squared*span_rear_y*span_rear_y
+                - constant_part_5*span_rear_y*cos_a1 - constant_part_5*span_rear_x*sin_a1
+                - link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
+                - link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
             )
             *(
-                constant_part_17 + constant_part_12*divisor_a2 + link_length_2_squared*span_rear_x*span_rear_x
-                + link_length_2_squared*span_rear_y*span_rear_y - constant_part_13*span_rear_y*cos_a1
-                - constant_part_13*span_rear_x*sin_a1 - constant_part_14*span_rear_y*cos_a1
-                - constant_part_14*span_rear_x*sin_a1
+                divisor_a2*link_length_2_squared_times_link_length_5_times_2 + constant_part_5*span_rear_y*cos_a1
+                + constant_part_5*span_rear_x*sin_a1
+                + link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
+                + link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1 - constant_part_7
+                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
             )
-            /(constant_part_15*swing_scale_a2*swing_scale_a2)
+            /(constant_part_6*swing_scale_a2*swing_scale_a2)
         )
         if sine_square_a2 > 0.0:
             minus_sin_swing_a2 = sqrt(sine_square_a2)*sigma_w
@@ -883,16 +925,22 @@ def unrolled(k: Constants) -> Unrolled:
         minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
         cos_swing_a2 = (
             (
-                constant_part_6*span_rear_y*cos_a1 + constant_part_6*span_rear_x*sin_a1
+                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
                 + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
-                - constant_part_18 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
+                - constant_part_8 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
             )
             /swing_scale_a2
         )
         cos_a2 = across_a2*minus_sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        pivot_rear_x = constant_part_2*sin_a1 + link_length_1*sin_a1 - link_length_5*cos_a2  # rod rear
+        # rod rear
+        pivot_rear_x = (
+            link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1 - link_length_5*cos_a2
+        )
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 - along_a2*minus_sin_swing_a2/divisor_a2
-        pivot_rear_y = constant_part_2*cos_a1 + link_length_1*cos_a1 + link_length_5*sin_a2  # rod rear
+        # rod rear
+        pivot_rear_y = (
+            link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1 + link_length_5*sin_a2
+        )
         rod_1_x = x - (minus_pivot_upper_x*swap_xy - minus_pivot_upper_x - minus_pivot_upper_y*swap_xy)
         rod_1_y = y - (minus_pivot_upper_y*swap_xy - minus_pivot_upper_y - minus_pivot_upper_x*swap_xy)
         centre_2_x = (
@@ -910,7 +958,7 @@ def unrolled(k: Constants) -> Unrolled:
             /link_length_3
         )
         type2_arms_aligned = (
-            constant_part_16*((y - centre_2_y)*rod_1_x - (x - centre_2_x)*rod_1_y)
+            assembly_sign_times_link_length_3_by_link_length_2*((y - centre_2_y)*rod_1_x - (x - centre_2_x)*rod_1_y)
             /(
                 root(
                     link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2

@@ -38,7 +38,7 @@ def unrolled(k: Constants) -> Unrolled:
     inner_arm_times_2 = 2.0*inner_arm
     inner_arm_plus_outer_arm = inner_arm + outer_arm
     inner_arm_minus_outer_arm = inner_arm - outer_arm
-    constant_part = inner_arm*inner_arm - outer_arm*outer_arm
+    inner_arm_squared_minus_outer_arm_squared = inner_arm*inner_arm - outer_arm*outer_arm
     assembly_sign_by_outer_arm_squared = assembly_sign/(outer_arm*outer_arm)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -95,14 +95,14 @@ def unrolled(k: Constants) -> Unrolled:
                 return 4*(3.0,)
             sin_swing_a2 = 0.0
         sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
+        cos_swing_a1 = (-inner_arm_squared_minus_outer_arm_squared - divisor_a1*divisor_a1)/swing_scale_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
+        cos_swing_a2 = (inner_arm_squared_minus_outer_arm_squared + divisor_a2*divisor_a2)/swing_scale_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
@@ -236,7 +236,7 @@ def unrolled(k: Constants) -> Unrolled:
                 return 4*(None,)
             sin_swing_a2 = 0.0
         sin_swing_a1_times_y_by_divisor_a1 = y*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
+        cos_swing_a1 = (-inner_arm_squared_minus_outer_arm_squared - divisor_a1*divisor_a1)/swing_scale_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_y_by_divisor_a1
         pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
@@ -247,7 +247,7 @@ def unrolled(k: Constants) -> Unrolled:
         minus_pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = minus_pivot_1_y + y
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
+        cos_swing_a2 = (inner_arm_squared_minus_outer_arm_squared + divisor_a2*divisor_a2)/swing_scale_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
@@ -339,12 +339,12 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return None
             sin_swing_a2 = 0.0
-        cos_swing_a1 = (-constant_part - divisor_a1*divisor_a1)/swing_scale_a1
+        cos_swing_a1 = (-inner_arm_squared_minus_outer_arm_squared - divisor_a1*divisor_a1)/swing_scale_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
         pivot_1_x = -displacement_minus_tcp_displacement - inner_arm*cos_a1  # rod 1
         sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         minus_pivot_1_y = inner_arm*sin_a1  # rod 1
-        cos_swing_a2 = (constant_part + divisor_a2*divisor_a2)/swing_scale_a2
+        cos_swing_a2 = (inner_arm_squared_minus_outer_arm_squared + divisor_a2*divisor_a2)/swing_scale_a2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement_minus_tcp_displacement + inner_arm*cos_a2  # rod 2
         sin_a2 = span_2_x*sin_swing_a2/divisor_a2 - y*cos_swing_a2/divisor_a2

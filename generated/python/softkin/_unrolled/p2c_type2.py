@@ -33,12 +33,12 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     tcp_link_distance = k.tcp_link_distance
     machine_scale_times_plane = 1e-6*machine_scale
-    constant_part = displacement - 0.5*tcp_link_distance
+    displacement_minus_tcp_link_distance_by_2 = displacement - 0.5*tcp_link_distance
     inner_arm_times_shortest_link = 1e-9*inner_arm
     inner_arm_times_2 = 2.0*inner_arm
     inner_arm_plus_outer_arm = inner_arm + outer_arm
     inner_arm_minus_outer_arm = inner_arm - outer_arm
-    constant_part_2 = inner_arm*inner_arm - outer_arm*outer_arm
+    inner_arm_squared_minus_outer_arm_squared = inner_arm*inner_arm - outer_arm*outer_arm
     assembly_sign_by_outer_arm_squared = assembly_sign/(outer_arm*outer_arm)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -54,7 +54,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 4*(3.0,)
-        span_1_x = constant_part + x  # rod 1
+        span_1_x = displacement_minus_tcp_link_distance_by_2 + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
@@ -74,7 +74,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a1 >= -1e-12):
                 return 4*(3.0,)
             minus_sin_swing_a1 = 0.0
-        span_2_x = x - constant_part  # rod 2
+        span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -95,17 +95,17 @@ def unrolled(k: Constants) -> Unrolled:
                 return 4*(3.0,)
             sin_swing_a2 = 0.0
         minus_sin_swing_a1_times_y_by_divisor_a1 = minus_sin_swing_a1*y/divisor_a1
-        cos_swing_a1 = (constant_part_2 + divisor_a1*divisor_a1)/swing_scale_a1
+        cos_swing_a1 = (inner_arm_squared_minus_outer_arm_squared + divisor_a1*divisor_a1)/swing_scale_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + minus_sin_swing_a1_times_y_by_divisor_a1
         minus_sin_swing_a1_times_span_1_x_by_divisor_a1 = minus_sin_swing_a1*span_1_x/divisor_a1
         cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 - minus_sin_swing_a1_times_span_1_x_by_divisor_a1
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (constant_part_2 + divisor_a2*divisor_a2)/swing_scale_a2
+        cos_swing_a2 = (inner_arm_squared_minus_outer_arm_squared + divisor_a2*divisor_a2)/swing_scale_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = constant_part + inner_arm*cos_a2  # rod 2
+        pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
         rod_2_x_outward = x - pivot_2_x
         sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*sin_swing_a2/divisor_a2
         cos_swing_a2_times_y_by_divisor_a2 = y*cos_swing_a2/divisor_a2
@@ -121,7 +121,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = constant_part + inner_arm*cos_a2  # rod 2
+        pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
         rod_2_x_inward = x - pivot_2_x
         sin_a2 = cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
@@ -130,7 +130,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
             axis_a2_inward = nearest_period(axis_a2_inward, open_a2)
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x = inner_arm*cos_a1 - constant_part  # rod 1
+            pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
             rod_1_x = x - pivot_1_x
             pivot_1_y = inner_arm*sin_a1  # rod 1
             rod_1_y = y - pivot_1_y
@@ -159,7 +159,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x = inner_arm*cos_a1 - constant_part  # rod 1
+            pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
             rod_1_x = x - pivot_1_x
             pivot_1_y = inner_arm*sin_a1  # rod 1
             rod_1_y = y - pivot_1_y
@@ -195,7 +195,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return 4*(None,)
-        span_1_x = constant_part + x  # rod 1
+        span_1_x = displacement_minus_tcp_link_distance_by_2 + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
@@ -215,7 +215,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a1 >= -1e-12):
                 return 4*(None,)
             minus_sin_swing_a1 = 0.0
-        span_2_x = x - constant_part  # rod 2
+        span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -236,10 +236,10 @@ def unrolled(k: Constants) -> Unrolled:
                 return 4*(None,)
             sin_swing_a2 = 0.0
         minus_sin_swing_a1_times_y_by_divisor_a1 = minus_sin_swing_a1*y/divisor_a1
-        cos_swing_a1 = (constant_part_2 + divisor_a1*divisor_a1)/swing_scale_a1
+        cos_swing_a1 = (inner_arm_squared_minus_outer_arm_squared + divisor_a1*divisor_a1)/swing_scale_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + minus_sin_swing_a1_times_y_by_divisor_a1
-        pivot_1_x = inner_arm*cos_a1 - constant_part  # rod 1
+        pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
         rod_1_x = x - pivot_1_x
         minus_sin_swing_a1_times_span_1_x_by_divisor_a1 = minus_sin_swing_a1*span_1_x/divisor_a1
         cos_swing_a1_times_y_by_divisor_a1 = y*cos_swing_a1/divisor_a1
@@ -247,10 +247,10 @@ def unrolled(k: Constants) -> Unrolled:
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
         sin_swing_a2_times_y_by_divisor_a2 = y*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (constant_part_2 + divisor_a2*divisor_a2)/swing_scale_a2
+        cos_swing_a2 = (inner_arm_squared_minus_outer_arm_squared + divisor_a2*divisor_a2)/swing_scale_a2
         cos_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*cos_swing_a2/divisor_a2
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 - sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = constant_part + inner_arm*cos_a2  # rod 2
+        pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
         rod_2_x_outward = x - pivot_2_x
         sin_swing_a2_times_span_2_x_by_divisor_a2 = span_2_x*sin_swing_a2/divisor_a2
         cos_swing_a2_times_y_by_divisor_a2 = y*cos_swing_a2/divisor_a2
@@ -263,7 +263,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a1_outward = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         cos_a2 = cos_swing_a2_times_span_2_x_by_divisor_a2 + sin_swing_a2_times_y_by_divisor_a2
-        pivot_2_x = constant_part + inner_arm*cos_a2  # rod 2
+        pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
         rod_2_x_inward = x - pivot_2_x
         sin_a2 = cos_swing_a2_times_y_by_divisor_a2 - sin_swing_a2_times_span_2_x_by_divisor_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
@@ -273,7 +273,7 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_outward_inward = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - minus_sin_swing_a1_times_y_by_divisor_a1
-        pivot_1_x = inner_arm*cos_a1 - constant_part  # rod 1
+        pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = cos_swing_a1_times_y_by_divisor_a1 + minus_sin_swing_a1_times_span_1_x_by_divisor_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
@@ -299,7 +299,7 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
-        span_1_x = constant_part + x  # rod 1
+        span_1_x = displacement_minus_tcp_link_distance_by_2 + x  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + y*y)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_times_shortest_link):
@@ -319,7 +319,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a1 >= -1e-12):
                 return None
             minus_sin_swing_a1 = 0.0
-        span_2_x = x - constant_part  # rod 2
+        span_2_x = x - displacement_minus_tcp_link_distance_by_2  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_times_shortest_link):
@@ -339,14 +339,14 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return None
             sin_swing_a2 = 0.0
-        cos_swing_a1 = (constant_part_2 + divisor_a1*divisor_a1)/swing_scale_a1
+        cos_swing_a1 = (inner_arm_squared_minus_outer_arm_squared + divisor_a1*divisor_a1)/swing_scale_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 + minus_sin_swing_a1*y/divisor_a1
-        pivot_1_x = inner_arm*cos_a1 - constant_part  # rod 1
+        pivot_1_x = inner_arm*cos_a1 - displacement_minus_tcp_link_distance_by_2  # rod 1
         sin_a1 = y*cos_swing_a1/divisor_a1 - minus_sin_swing_a1*span_1_x/divisor_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
-        cos_swing_a2 = (constant_part_2 + divisor_a2*divisor_a2)/swing_scale_a2
+        cos_swing_a2 = (inner_arm_squared_minus_outer_arm_squared + divisor_a2*divisor_a2)/swing_scale_a2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2/divisor_a2
-        pivot_2_x = constant_part + inner_arm*cos_a2  # rod 2
+        pivot_2_x = displacement_minus_tcp_link_distance_by_2 + inner_arm*cos_a2  # rod 2
         sin_a2 = y*cos_swing_a2/divisor_a2 + span_2_x*sin_swing_a2/divisor_a2
         pivot_2_y = inner_arm*sin_a2  # rod 2
         type2_arms_aligned = (

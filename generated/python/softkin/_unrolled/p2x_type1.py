@@ -33,7 +33,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_plane = 1e-6*machine_scale
     arm_length_1_squared_times_rounding = 1e-12*arm_length_1*arm_length_1
     arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
-    constant_part = assembly_sign/(arm_length_1*arm_length_2)
+    assembly_sign_by_arm_length_1_by_arm_length_2 = assembly_sign/(arm_length_1*arm_length_2)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -71,13 +71,17 @@ def unrolled(k: Constants) -> Unrolled:
             rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
-                type2_arms_aligned_right = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
+                type2_arms_aligned_right = (
+                    assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
+                )
                 refusal_left_right_2 = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
             else:
                 refusal_left_right_2 = 3.0
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
-                type2_arms_aligned_left = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
+                type2_arms_aligned_left = (
+                    assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
+                )
                 refusal_left_left_2 = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
             else:
                 refusal_left_left_2 = 3.0
@@ -91,13 +95,17 @@ def unrolled(k: Constants) -> Unrolled:
             rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_right >= lowest_a2 and axis_a2_right <= highest_a2:
-                type2_arms_aligned_right = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
+                type2_arms_aligned_right = (
+                    assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
+                )
                 refusal_right_right_2 = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
             else:
                 refusal_right_right_2 = 3.0
             # arms_aligned: the other assembly mode, or too near to losing the plate
             if axis_a2_left >= lowest_a2 and axis_a2_left <= highest_a2:
-                type2_arms_aligned_left = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
+                type2_arms_aligned_left = (
+                    assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
+                )
                 refusal_right_left_2 = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
             else:
                 refusal_right_left_2 = 3.0
@@ -135,7 +143,9 @@ def unrolled(k: Constants) -> Unrolled:
         a1 = span_1_x - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         pivot_1_x = a1 + tcp_offset_1  # rod 1
         rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
-        type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
+        type2_arms_aligned = (
+            assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
         axis_a1_left = a1 + offset_a1
@@ -143,18 +153,24 @@ def unrolled(k: Constants) -> Unrolled:
         a2 = span_2_x - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         pivot_2_x = a2 - tcp_offset_2  # rod 2
         rod_2_x_times_span_1_y_left = (x - pivot_2_x)*span_1_y
-        type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
+        type2_arms_aligned = (
+            assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
         axis_a2_left = a2 + offset_a2
         a1 = span_1_x + (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
         pivot_1_x = a1 + tcp_offset_1  # rod 1
         rod_1_x_times_span_2_y = (x - pivot_1_x)*span_2_y
-        type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
+        type2_arms_aligned = (
+            assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_right)
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
         axis_a1_right = a1 + offset_a1
-        type2_arms_aligned = constant_part*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
+        type2_arms_aligned = (
+            assembly_sign_by_arm_length_1_by_arm_length_2*(rod_1_x_times_span_2_y - rod_2_x_times_span_1_y_left)
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = 0.0 if type2_arms_aligned >= min_type2_margin else 3.0
         return (
@@ -187,7 +203,10 @@ def unrolled(k: Constants) -> Unrolled:
         span_2_x = tcp_offset_2 + x  # rod 2
         a2 = span_2_x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
         pivot_2_x = a2 - tcp_offset_2  # rod 2
-        type2_arms_aligned = ((x - pivot_1_x)*(y - rail_y_2) - (x - pivot_2_x)*(y - rail_y_1))*constant_part
+        type2_arms_aligned = (
+            ((x - pivot_1_x)*(y - rail_y_2) - (x - pivot_2_x)*(y - rail_y_1))
+            *assembly_sign_by_arm_length_1_by_arm_length_2
+        )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

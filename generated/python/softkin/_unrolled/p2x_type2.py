@@ -27,7 +27,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a2 = k.offset_a2
     span_1_x = k.span_1_x
     machine_scale_times_plane = 1e-6*machine_scale
-    constant_part = 2.5e-13*arm_length*arm_length
+    share_of_arm_length_squared = 2.5e-13*arm_length*arm_length
     assembly_sign_by_arm_length = assembly_sign/arm_length
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -41,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
             return (3.0,)
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -constant_part):
+        if not (root_square_a2 >= -share_of_arm_length_squared):
             return (3.0,)
         type2_flat = assembly_sign_by_arm_length*y
         # flat: the other assembly mode, or too near to losing the plate
@@ -69,7 +69,7 @@ def unrolled(k: Constants) -> Unrolled:
             return (None,)
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -constant_part):
+        if not (root_square_a2 >= -share_of_arm_length_squared):
             return (None,)
         type2_flat = assembly_sign_by_arm_length*y
         # flat: the other assembly mode, or too near to losing the plate
@@ -89,7 +89,7 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         root_square_a2 = -(y - arm_length)*(arm_length + y)  # a2: quadratic in the rod 1 (through x) equation
         # rod 1 (through x) cannot reach
-        if not (root_square_a2 >= -constant_part):
+        if not (root_square_a2 >= -share_of_arm_length_squared):
             return None
         type2_flat = assembly_sign_by_arm_length*y
         # flat: the other assembly mode, or too near to losing the plate

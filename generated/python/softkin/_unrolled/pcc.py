@@ -35,7 +35,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     scale_a2_from_a1_squared = scale_a2_from_a1*scale_a2_from_a1
-    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -65,7 +65,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2_from_a1 >= -1e-12):
                 return 2*(3.0,)
             sin_a2_from_a1 = 0.0
-        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
+        cos_a2_from_a1 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2_from_a1
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(
                 link_length_2*sin_a2_from_a1 + 0.0, link_length_1 + link_length_2*cos_a2_from_a1 + 0.0,
@@ -140,7 +140,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2_from_a1 >= -1e-12):
                 return 2*(None,)
             sin_a2_from_a1 = 0.0
-        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
+        cos_a2_from_a1 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2_from_a1
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
             angle_of_x = arctan2(y, x)
@@ -180,7 +180,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2_from_a1 >= -1e-12):
                 return None
             sin_a2_from_a1 = 0.0
-        cos_a2_from_a1 = (reach*reach - constant_part)/scale_a2_from_a1
+        cos_a2_from_a1 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2_from_a1
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
         else:

@@ -39,7 +39,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
-    constant_part = 1e-34*machine_scale*machine_scale
+    share_of_machine_scale_squared = 1e-34*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_plus_effective_q3_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2 = a2 - effective_q3_2
@@ -64,7 +64,7 @@ def unrolled(k: Constants) -> Unrolled:
             ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
                 return 4*(3.0,)
             ahead_q1 = 0.0
         # its reference where it is free
@@ -228,7 +228,7 @@ def unrolled(k: Constants) -> Unrolled:
             ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
                 return 4*(None,)
             ahead_q1 = 0.0
         # its reference where it is free
@@ -342,7 +342,7 @@ def unrolled(k: Constants) -> Unrolled:
             ahead_q1 = sqrt(ahead_squared_q1)*sigma_arm
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -constant_part - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
                 return None
             ahead_q1 = 0.0
         # its reference where it is free

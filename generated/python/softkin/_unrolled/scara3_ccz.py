@@ -35,7 +35,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     scale_a2_squared = scale_a2*scale_a2
-    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
     offset_a2_times_2 = 2.0*offset_a2
 
@@ -66,7 +66,7 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A3
         if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
             return 2*(3.0,)
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_x = arctan2(y + 0.0, x + 0.0)
@@ -128,7 +128,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return 2*(None,)
             sin_a2 = 0.0
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_x = arctan2(y, x)
@@ -163,7 +163,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return None
             sin_a2 = 0.0
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:

@@ -41,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
     arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
     arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
     scale_a2_squared = scale_a2*scale_a2
-    constant_part = arm_length_1*arm_length_1 + arm_length_2*arm_length_2
+    arm_length_1_squared_plus_arm_length_2_squared = arm_length_1*arm_length_1 + arm_length_2*arm_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -95,7 +95,7 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return 2*(3.0,)
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - arm_length_1_squared_plus_arm_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2 + 0.0, arm_length_1 + arm_length_2*cos_a2 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
@@ -179,7 +179,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return 2*(None,)
             sin_a2 = 0.0
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - arm_length_1_squared_plus_arm_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -229,7 +229,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return None
             sin_a2 = 0.0
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - arm_length_1_squared_plus_arm_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
         else:

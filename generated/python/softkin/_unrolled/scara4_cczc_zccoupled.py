@@ -40,11 +40,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a4 = k.single_a4
-    flange_down_times_2_minus_1 = 2.0*flange_down - 1.0
+    flange_down_times_2_minus_one = 2.0*flange_down - 1.0
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     scale_a2_squared = scale_a2*scale_a2
-    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
     pitch_zc_by_360 = pitch_zc/360.0
 
@@ -72,8 +72,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return 2*(2.0,)
         # projection: the tool direction swings to the machine's, the twist is kept
-        heading_along = r11 - flange_down_times_2_minus_1*r22
-        heading_across = r21 + flange_down_times_2_minus_1*r12
+        heading_along = r11 - flange_down_times_2_minus_one*r22
+        heading_across = r21 + flange_down_times_2_minus_one*r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
@@ -91,7 +91,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return 2*(3.0,)
             sin_a2 = 0.0
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_x = arctan2(y + 0.0, x + 0.0)
@@ -158,8 +158,8 @@ def unrolled(k: Constants) -> Unrolled:
         (x, y, z), ((r11, r12, _), (r21, r22, _), _) = frame
         ref_a1, _, _, ref_a4 = 4*(0.0,) if reference is None else reference
         # projection: the tool direction swings to the machine's, the twist is kept
-        heading_along = r11 - flange_down_times_2_minus_1*r22
-        heading_across = r21 + flange_down_times_2_minus_1*r12
+        heading_along = r11 - flange_down_times_2_minus_one*r22
+        heading_across = r21 + flange_down_times_2_minus_one*r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
@@ -177,7 +177,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return 2*(None,)
             sin_a2 = 0.0
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_x = arctan2(y, x)
@@ -214,8 +214,8 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_elbow,) = signs
         ref_a1, _, _, ref_a4 = 4*(0.0,) if reference is None else reference
         # projection: the tool direction swings to the machine's, the twist is kept
-        heading_along = r11 - flange_down_times_2_minus_1*r22
-        heading_across = r21 + flange_down_times_2_minus_1*r12
+        heading_along = r11 - flange_down_times_2_minus_one*r22
+        heading_across = r21 + flange_down_times_2_minus_one*r12
         heading_length = sqrt(heading_across*heading_across + heading_along*heading_along)
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
@@ -233,7 +233,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return None
             sin_a2 = 0.0
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:

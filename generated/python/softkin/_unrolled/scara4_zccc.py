@@ -41,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     scale_a3_squared = scale_a3*scale_a3
-    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -95,7 +95,7 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3.0,)
-        cos_a3 = (reach*reach - constant_part)/scale_a3
+        cos_a3 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3 + 0.0, link_length_1 + link_length_2*cos_a3 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
@@ -180,7 +180,7 @@ def unrolled(k: Constants) -> Unrolled:
                 return 2*(None,)
             sin_a3 = 0.0
         axis_a1 = offset_a1 + z
-        cos_a3 = (reach*reach - constant_part)/scale_a3
+        cos_a3 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -229,7 +229,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a3 >= -1e-12):
                 return None
             sin_a3 = 0.0
-        cos_a3 = (reach*reach - constant_part)/scale_a3
+        cos_a3 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a3
         if reach > machine_scale_times_free_angle:
             angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
         else:

@@ -41,7 +41,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     scale_a2_squared = scale_a2*scale_a2
-    constant_part = link_length_1*link_length_1 + link_length_2*link_length_2
+    link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
     pitch_zc_by_360 = pitch_zc/360.0
 
@@ -87,7 +87,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return 2*(3.0,)
             sin_a2 = 0.0
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_x = arctan2(y + 0.0, x + 0.0)
@@ -172,7 +172,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return 2*(None,)
             sin_a2 = 0.0
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_x = arctan2(y, x)
@@ -227,7 +227,7 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a2 >= -1e-12):
                 return None
             sin_a2 = 0.0
-        cos_a2 = (reach*reach - constant_part)/scale_a2
+        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:

@@ -36,19 +36,19 @@ def unrolled(k: Constants) -> Unrolled:
     cos_rail_angle_squared = cos_rail_angle*cos_rail_angle
     inner_radius_minus_outer_radius = inner_radius - outer_radius
     sin_rail_angle_squared = sin_rail_angle*sin_rail_angle
-    constant_part = 2.0*cos_rail_angle*sin_rail_angle
+    cos_rail_angle_times_sin_rail_angle_times_2 = 2.0*cos_rail_angle*sin_rail_angle
     arm_length_squared_times_rounding = 1e-12*arm_length*arm_length
-    constant_part_2 = 0.5*inner_radius - 0.5*outer_radius
+    inner_radius_by_2_minus_outer_radius_by_2 = 0.5*inner_radius - 0.5*outer_radius
     sin_rail_angle_squared_by_4 = 0.25*sin_rail_angle*sin_rail_angle
     cos_rail_angle_times_sin_rail_angle = cos_rail_angle*sin_rail_angle
-    constant_part_3 = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius
+    constant_part = 0.5*root(3.0)*inner_radius - 0.5*root(3.0)*outer_radius
     sin_rail_angle_squared_times_3_by_4 = 0.75*sin_rail_angle*sin_rail_angle
-    constant_part_4 = 0.5*root(3.0)*sin_rail_angle*sin_rail_angle
-    constant_part_5 = root(3.0)*cos_rail_angle*sin_rail_angle
-    constant_part_6 = 0.5/arm_length
-    constant_part_by_2_by_arm_length = 0.5*root(3.0)/arm_length
+    root_of_3_times_sin_rail_angle_squared_by_2 = 0.5*root(3.0)*sin_rail_angle*sin_rail_angle
+    constant_part_2 = root(3.0)*cos_rail_angle*sin_rail_angle
+    one_by_2_by_arm_length = 0.5/arm_length
+    root_of_3_by_2_by_arm_length = 0.5*root(3.0)/arm_length
     sin_rail_angle_by_2 = 0.5*sin_rail_angle
-    constant_part_times_sin_rail_angle_by_2 = 0.5*root(3.0)*sin_rail_angle
+    root_of_3_times_sin_rail_angle_by_2 = 0.5*root(3.0)*sin_rail_angle
     assembly_sign_by_constant_part = assembly_sign/(arm_length*arm_length*arm_length)
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -61,31 +61,33 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            part_of_root_square_a1 + constant_part*span_1_x*z + span_1_x*span_1_x*sin_rail_angle_squared
-            - span_1_x*span_1_x - y*y
+            part_of_root_square_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
+            + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
             return 8*(3.0,)
-        span_2_x = constant_part_2 + x  # rod 2
+        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
         part_of_root_square_a2 = (
             part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
         )
         part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle - part_of_root_square_a2
-        span_2_y = y - constant_part_3  # rod 2
+        span_2_y = y - constant_part  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            constant_part_5*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
-            - part_of_root_square_a2_2 - span_2_y*span_2_y - constant_part_4*span_2_x*span_2_y
+            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
+            - part_of_root_square_a2_2 - span_2_y*span_2_y
+            - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding):
             return 8*(3.0,)
-        span_3_y = constant_part_3 + y  # rod 3
+        span_3_y = constant_part + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            constant_part_4*span_2_x*span_3_y + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4
-            - part_of_root_square_a2_2 - span_3_y*span_3_y - constant_part_5*span_3_y*z
+            root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
+            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4 - part_of_root_square_a2_2 - span_3_y*span_3_y
+            - constant_part_2*span_3_y*z
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
@@ -94,53 +96,53 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
             return 8*(3.0,)
         # ball joint of rod 2
-        if not (abs(constant_part_6*y + constant_part_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length*y + root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
         # ball joint of rod 3
-        if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length*y - root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
         cos_rail_angle_times_z = z*cos_rail_angle
         part_of_middle_a2 = cos_rail_angle_times_z - span_2_x*sin_rail_angle_by_2
-        middle_a2 = -part_of_middle_a2 - constant_part_times_sin_rail_angle_by_2*span_2_y
+        middle_a2 = -part_of_middle_a2 - root_of_3_times_sin_rail_angle_by_2*span_2_y
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
+        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
         rod_2_x_below = x - pivot_2_x
         minus_pivot_2_z = a2*cos_rail_angle  # rod 2
         rod_2_z_below = minus_pivot_2_z + z
-        middle_a3 = constant_part_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
+        middle_a3 = root_of_3_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
         a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
+        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
         rod_3_x_below = x - pivot_3_x
         minus_pivot_3_z = a3*cos_rail_angle  # rod 3
         rod_3_z_below = minus_pivot_3_z + z
         part_of_type2_rods_coplanar = rod_2_x_below*rod_3_z_below*y - rod_2_z_below*rod_3_x_below*y
         middle_a1 = cos_rail_angle_times_z + span_1_x*sin_rail_angle
         minus_a1 = middle_a1 - (sqrt(root_square_a1) if root_square_a1 > 0.0 else 0.0)
-        pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
+        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
         rod_2_y_below = y - pivot_2_y
-        pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
+        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
         rod_3_y_below = y - pivot_3_y
         axis_a3_below = a3 + offset_a3
         axis_a2_below = a2 + offset_a2
         axis_a1_below = offset_a1 - minus_a1
         a3 = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
+        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
         rod_3_x_above = x - pivot_3_x
         minus_pivot_3_z = a3*cos_rail_angle  # rod 3
         rod_3_z_above = minus_pivot_3_z + z
         part_of_type2_rods_coplanar_below_above_below = rod_2_x_below*rod_3_z_above*y - rod_2_z_below*rod_3_x_above*y
-        pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
+        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
         rod_3_y_above = y - pivot_3_y
         axis_a3_above = a3 + offset_a3
         a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
+        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
         rod_2_x_above = x - pivot_2_x
         minus_pivot_2_z = a2*cos_rail_angle  # rod 2
         rod_2_z_above = minus_pivot_2_z + z
         part_of_type2_rods_coplanar_below_above_below_above_below_above_2 = (
             rod_2_x_above*rod_3_z_below*y - rod_2_z_above*rod_3_x_below*y
         )
-        pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
+        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
         rod_2_y_above = y - pivot_2_y
         axis_a2_above = a2 + offset_a2
         part_of_type2_rods_coplanar_below_above_below_above_below_above_3 = (
@@ -338,31 +340,33 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            part_of_root_square_a1 + constant_part*span_1_x*z + span_1_x*span_1_x*sin_rail_angle_squared
-            - span_1_x*span_1_x - y*y
+            part_of_root_square_a1 + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
+            + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
             return 8*(None,)
-        span_2_x = constant_part_2 + x  # rod 2
+        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
         part_of_root_square_a2 = (
             part_of_root_square_a1 - span_2_x*span_2_x + span_2_x*span_2_x*sin_rail_angle_squared_by_4
         )
         part_of_root_square_a2_2 = span_2_x*z*cos_rail_angle_times_sin_rail_angle - part_of_root_square_a2
-        span_2_y = y - constant_part_3  # rod 2
+        span_2_y = y - constant_part  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            constant_part_5*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
-            - part_of_root_square_a2_2 - span_2_y*span_2_y - constant_part_4*span_2_x*span_2_y
+            constant_part_2*span_2_y*z + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
+            - part_of_root_square_a2_2 - span_2_y*span_2_y
+            - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding):
             return 8*(None,)
-        span_3_y = constant_part_3 + y  # rod 3
+        span_3_y = constant_part + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            constant_part_4*span_2_x*span_3_y + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4
-            - part_of_root_square_a2_2 - span_3_y*span_3_y - constant_part_5*span_3_y*z
+            root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
+            + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4 - part_of_root_square_a2_2 - span_3_y*span_3_y
+            - constant_part_2*span_3_y*z
         )
         # rod 3 cannot reach
         if not (root_square_a3 >= -arm_length_squared_times_rounding):
@@ -371,22 +375,22 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
             return 8*(None,)
         # ball joint of rod 2
-        if not (abs(constant_part_6*y + constant_part_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length*y + root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
         # ball joint of rod 3
-        if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length*y - root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
         cos_rail_angle_times_z = z*cos_rail_angle
         part_of_middle_a2 = cos_rail_angle_times_z - span_2_x*sin_rail_angle_by_2
-        middle_a2 = -part_of_middle_a2 - constant_part_times_sin_rail_angle_by_2*span_2_y
+        middle_a2 = -part_of_middle_a2 - root_of_3_times_sin_rail_angle_by_2*span_2_y
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
+        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
         rod_2_x_below = x - pivot_2_x
         minus_pivot_2_z = a2*cos_rail_angle  # rod 2
         rod_2_z_below = minus_pivot_2_z + z
-        middle_a3 = constant_part_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
+        middle_a3 = root_of_3_times_sin_rail_angle_by_2*span_3_y - part_of_middle_a2
         a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
+        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
         rod_3_x_below = x - pivot_3_x
         minus_pivot_3_z = a3*cos_rail_angle  # rod 3
         rod_3_z_below = minus_pivot_3_z + z
@@ -397,9 +401,9 @@ def unrolled(k: Constants) -> Unrolled:
         rod_1_x = x - pivot_1_x
         pivot_1_z = minus_a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
-        pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
+        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
         rod_2_y_below = y - pivot_2_y
-        pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
+        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
         rod_3_y_below = y - pivot_3_y
         type2_rods_coplanar = (
             (
@@ -415,12 +419,12 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_below = a2 + offset_a2
         axis_a3_below = a3 + offset_a3
         a3 = middle_a3 - (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)
-        pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
+        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
         rod_3_x_above = x - pivot_3_x
         minus_pivot_3_z = a3*cos_rail_angle  # rod 3
         rod_3_z_above = minus_pivot_3_z + z
         part_of_type2_rods_coplanar_below_above_below = rod_2_x_below*rod_3_z_above*y - rod_2_z_below*rod_3_x_above*y
-        pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
+        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
         rod_3_y_above = y - pivot_3_y
         type2_rods_coplanar = (
             (
@@ -434,14 +438,14 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_below_below_above = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
         axis_a3_above = a3 + offset_a3
         a2 = middle_a2 - (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
-        pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
+        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
         rod_2_x_above = x - pivot_2_x
         minus_pivot_2_z = a2*cos_rail_angle  # rod 2
         rod_2_z_above = minus_pivot_2_z + z
         part_of_type2_rods_coplanar_below_above_below_above_below_above_2 = (
             rod_2_x_above*rod_3_z_below*y - rod_2_z_above*rod_3_x_below*y
         )
-        pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
+        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
         rod_2_y_above = y - pivot_2_y
         type2_rods_coplanar = (
             (
@@ -531,30 +535,31 @@ def unrolled(k: Constants) -> Unrolled:
         span_1_x = x - inner_radius_minus_outer_radius  # rod 1
         # a1: quadratic in the rod 1 equation
         root_square_a1 = (
-            arm_length_squared + constant_part*span_1_x*z + z*z*cos_rail_angle_squared
+            arm_length_squared + z*z*cos_rail_angle_squared + span_1_x*z*cos_rail_angle_times_sin_rail_angle_times_2
             + span_1_x*span_1_x*sin_rail_angle_squared - span_1_x*span_1_x - y*y - z*z
         )
         # rod 1 cannot reach
         if not (root_square_a1 >= -arm_length_squared_times_rounding):
             return None
-        span_2_x = constant_part_2 + x  # rod 2
-        span_2_y = y - constant_part_3  # rod 2
+        span_2_x = inner_radius_by_2_minus_outer_radius_by_2 + x  # rod 2
+        span_2_y = y - constant_part  # rod 2
         # a2: quadratic in the rod 2 equation
         root_square_a2 = (
-            arm_length_squared + constant_part_5*span_2_y*z + z*z*cos_rail_angle_squared
+            arm_length_squared + constant_part_2*span_2_y*z + z*z*cos_rail_angle_squared
             + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_2_y*span_2_y*sin_rail_angle_squared_times_3_by_4
-            - span_2_x*span_2_x - span_2_y*span_2_y - z*z - constant_part_4*span_2_x*span_2_y
-            - span_2_x*z*cos_rail_angle_times_sin_rail_angle
+            - span_2_x*span_2_x - span_2_y*span_2_y - z*z - span_2_x*z*cos_rail_angle_times_sin_rail_angle
+            - root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_2_y
         )
         # rod 2 cannot reach
         if not (root_square_a2 >= -arm_length_squared_times_rounding):
             return None
-        span_3_y = constant_part_3 + y  # rod 3
+        span_3_y = constant_part + y  # rod 3
         # a3: quadratic in the rod 3 equation
         root_square_a3 = (
-            arm_length_squared + constant_part_4*span_2_x*span_3_y + z*z*cos_rail_angle_squared
+            arm_length_squared + z*z*cos_rail_angle_squared
+            + root_of_3_times_sin_rail_angle_squared_by_2*span_2_x*span_3_y
             + span_2_x*span_2_x*sin_rail_angle_squared_by_4 + span_3_y*span_3_y*sin_rail_angle_squared_times_3_by_4
-            - span_2_x*span_2_x - span_3_y*span_3_y - z*z - constant_part_5*span_3_y*z
+            - span_2_x*span_2_x - span_3_y*span_3_y - z*z - constant_part_2*span_3_y*z
             - span_2_x*z*cos_rail_angle_times_sin_rail_angle
         )
         # rod 3 cannot reach
@@ -568,19 +573,19 @@ def unrolled(k: Constants) -> Unrolled:
         rod_1_x = x - pivot_1_x
         pivot_1_z = minus_a1*cos_rail_angle  # rod 1
         rod_1_z = z - pivot_1_z
-        middle_a2 = span_2_x*sin_rail_angle_by_2 - constant_part_times_sin_rail_angle_by_2*span_2_y - z*cos_rail_angle
+        middle_a2 = span_2_x*sin_rail_angle_by_2 - z*cos_rail_angle - root_of_3_times_sin_rail_angle_by_2*span_2_y
         a2 = middle_a2 + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)*sigma_carriage_2
-        pivot_2_x = a2*sin_rail_angle_by_2 - constant_part_2  # rod 2
+        pivot_2_x = a2*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = constant_part_3 - a2*constant_part_times_sin_rail_angle_by_2  # rod 2
+        pivot_2_y = constant_part - a2*root_of_3_times_sin_rail_angle_by_2  # rod 2
         rod_2_y = y - pivot_2_y
         minus_pivot_2_z = a2*cos_rail_angle  # rod 2
         rod_2_z = minus_pivot_2_z + z
-        middle_a3 = constant_part_times_sin_rail_angle_by_2*span_3_y + span_2_x*sin_rail_angle_by_2 - z*cos_rail_angle
+        middle_a3 = root_of_3_times_sin_rail_angle_by_2*span_3_y + span_2_x*sin_rail_angle_by_2 - z*cos_rail_angle
         a3 = middle_a3 + (sqrt(root_square_a3) if root_square_a3 > 0.0 else 0.0)*sigma_carriage_3
-        pivot_3_x = a3*sin_rail_angle_by_2 - constant_part_2  # rod 3
+        pivot_3_x = a3*sin_rail_angle_by_2 - inner_radius_by_2_minus_outer_radius_by_2  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = a3*constant_part_times_sin_rail_angle_by_2 - constant_part_3  # rod 3
+        pivot_3_y = a3*root_of_3_times_sin_rail_angle_by_2 - constant_part  # rod 3
         rod_3_y = y - pivot_3_y
         minus_pivot_3_z = a3*cos_rail_angle  # rod 3
         rod_3_z = minus_pivot_3_z + z
@@ -598,10 +603,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 2
-        if not (abs(constant_part_6*y + constant_part_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length*y + root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 3
-        if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length*y - root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
             return None
         return (offset_a1 - minus_a1, a2 + offset_a2, a3 + offset_a3)
 

@@ -38,8 +38,8 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     stewart_radius = k.stewart_radius
-    arm_1_radius_minus_constant_part = arm_1_radius - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-    constant_part = 0.25*distance*distance - stewart_radius*stewart_radius
+    constant_part = arm_1_radius - root(stewart_radius*stewart_radius - 0.25*distance*distance)
+    distance_squared_by_4_minus_stewart_radius_squared = 0.25*distance*distance - stewart_radius*stewart_radius
     arm_1_radius_times_2 = 2.0*arm_1_radius
     arm_length_1_times_2 = 2.0*arm_length_1
     constant_part_2 = (
@@ -53,13 +53,13 @@ def unrolled(k: Constants) -> Unrolled:
     constant_part_4 = (
         0.5*root(3.0)*arm_1_radius - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
     )
-    constant_part_5 = 5e-10*arm_length_1
-    constant_part_6 = 0.5/arm_length_2
-    constant_part_by_2_by_arm_length_2 = 0.5*root(3.0)/arm_length_2
+    share_of_arm_length_1 = 5e-10*arm_length_1
+    one_by_2_by_arm_length_2 = 0.5/arm_length_2
+    root_of_3_by_2_by_arm_length_2 = 0.5*root(3.0)/arm_length_2
     arm_length_1_by_2 = 0.5*arm_length_1
-    constant_part_times_arm_length_1_by_2 = 0.5*root(3.0)*arm_length_1
+    root_of_3_times_arm_length_1_by_2 = 0.5*root(3.0)*arm_length_1
     assembly_sign_by_constant_part = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
-    constant_part_7 = arm_length_1*arm_length_1 - arm_length_2*arm_length_2
+    arm_length_1_squared_minus_arm_length_2_squared = arm_length_1*arm_length_1 - arm_length_2*arm_length_2
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -71,8 +71,8 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return 8*(2.0,)
-        span_1_x = arm_1_radius_minus_constant_part + x  # rod 1
-        span_1_z_squared = -constant_part
+        span_1_x = constant_part + x  # rod 1
+        span_1_z_squared = -distance_squared_by_4_minus_stewart_radius_squared
         # rod 1
         span_1_z = (
             z
@@ -115,12 +115,12 @@ def unrolled(k: Constants) -> Unrolled:
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > constant_part_5):
+        if not (effective_a2 > share_of_arm_length_1):
             return 8*(3.0,)
         arm_length_2_squared_minus_part_of_sine_square_a2 = (
             arm_length_2_squared - (arm_length_1_squared + span_1_z*span_1_z + span_2_x*span_2_x)
         )
-        divisor_a2 = effective_a2 if effective_a2 > constant_part_5 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
@@ -139,9 +139,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > constant_part_5):
+        if not (effective_a3 > share_of_arm_length_1):
             return 8*(3.0,)
-        divisor_a3 = effective_a3 if effective_a3 > constant_part_5 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
@@ -160,10 +160,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(3.0,)
         # ball joint of rod 2
-        if not (abs(constant_part_6*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length_2*y + root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
         # ball joint of rod 3
-        if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
         cos_swing_a2 = (span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a2
@@ -211,9 +211,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        pivot_2_y = -constant_part_4 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_4 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_outward = y - pivot_2_y
-        pivot_3_y = constant_part_4 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_4 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_outward = y - pivot_3_y
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
@@ -243,7 +243,7 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_type2_rods_coplanar_outward_inward_outward = (
             rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
         )
-        pivot_3_y = constant_part_4 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_4 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_inward = y - pivot_3_y
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
@@ -264,7 +264,7 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
             rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
         )
-        pivot_2_y = -constant_part_4 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_4 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
@@ -273,7 +273,7 @@ def unrolled(k: Constants) -> Unrolled:
             rod_2_x_inward*rod_3_z_inward*y - rod_2_z_inward*rod_3_x_inward*y
         )
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
+            pivot_1_x = -constant_part - arm_length_1*cos_a1  # rod 1
             rod_1_x = x - pivot_1_x
             # rod 1
             pivot_1_z = (
@@ -355,7 +355,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
+            pivot_1_x = -constant_part - arm_length_1*cos_a1  # rod 1
             rod_1_x = x - pivot_1_x
             # rod 1
             pivot_1_z = (
@@ -477,8 +477,8 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = arm_1_radius_minus_constant_part + x  # rod 1
-        span_1_z_squared = -constant_part
+        span_1_x = constant_part + x  # rod 1
+        span_1_z_squared = -distance_squared_by_4_minus_stewart_radius_squared
         # rod 1
         span_1_z = (
             z
@@ -521,12 +521,12 @@ def unrolled(k: Constants) -> Unrolled:
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > constant_part_5):
+        if not (effective_a2 > share_of_arm_length_1):
             return 8*(None,)
         arm_length_2_squared_minus_part_of_sine_square_a2 = (
             arm_length_2_squared - (arm_length_1_squared + span_1_z*span_1_z + span_2_x*span_2_x)
         )
-        divisor_a2 = effective_a2 if effective_a2 > constant_part_5 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
@@ -545,9 +545,9 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > constant_part_5):
+        if not (effective_a3 > share_of_arm_length_1):
             return 8*(None,)
-        divisor_a3 = effective_a3 if effective_a3 > constant_part_5 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
@@ -566,10 +566,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(None,)
         # ball joint of rod 2
-        if not (abs(constant_part_6*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length_2*y + root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
         # ball joint of rod 3
-        if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
         cos_swing_a2 = (span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a2
@@ -614,7 +614,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
-        pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
+        pivot_1_x = -constant_part - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
@@ -628,9 +628,9 @@ def unrolled(k: Constants) -> Unrolled:
             - arm_length_1*sin_a1
         )
         rod_1_z = z - pivot_1_z
-        pivot_2_y = -constant_part_4 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_4 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_outward = y - pivot_2_y
-        pivot_3_y = constant_part_4 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_4 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_outward = y - pivot_3_y
         type2_rods_coplanar = (
             (
@@ -661,7 +661,7 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_type2_rods_coplanar_outward_inward_outward = (
             rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
         )
-        pivot_3_y = constant_part_4 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_4 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_inward = y - pivot_3_y
         type2_rods_coplanar = (
             (
@@ -690,7 +690,7 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
             rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
         )
-        pivot_2_y = -constant_part_4 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_4 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         type2_rods_coplanar = (
             (
@@ -717,7 +717,7 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
-        pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
+        pivot_1_x = -constant_part - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
         # rod 1
@@ -785,7 +785,7 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
-        span_1_x = arm_1_radius_minus_constant_part + x  # rod 1
+        span_1_x = constant_part + x  # rod 1
         # rod 1
         span_1_z = (
             z
@@ -804,8 +804,14 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
         # kept as a product
         sine_square_a1 = (
-            (constant_part_7 + arm_length_1_times_2*divisor_a1 + divisor_a1*divisor_a1 + y*y)
-            *(arm_length_1_times_2*divisor_a1 - constant_part_7 - divisor_a1*divisor_a1 - y*y)
+            (
+                arm_length_1_times_2*divisor_a1 - arm_length_1_squared_minus_arm_length_2_squared
+                - divisor_a1*divisor_a1 - y*y
+            )
+            *(
+                arm_length_1_squared_minus_arm_length_2_squared + arm_length_1_times_2*divisor_a1
+                + divisor_a1*divisor_a1 + y*y
+            )
             /(swing_scale_a1*swing_scale_a1)
         )
         if sine_square_a1 > 0.0:
@@ -821,14 +827,20 @@ def unrolled(k: Constants) -> Unrolled:
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
-        if not (effective_a2 > constant_part_5):
+        if not (effective_a2 > share_of_arm_length_1):
             return None
-        divisor_a2 = effective_a2 if effective_a2 > constant_part_5 else 1.0
+        divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
         # kept as a product
         sine_square_a2 = (
-            (constant_part_7 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)
-            *(arm_length_1*divisor_a2 - constant_part_7 - span_1_z*span_1_z - span_2_x*span_2_x - span_2_y*span_2_y)
+            (
+                arm_length_1_squared_minus_arm_length_2_squared + arm_length_1*divisor_a2 + span_1_z*span_1_z
+                + span_2_x*span_2_x + span_2_y*span_2_y
+            )
+            *(
+                arm_length_1*divisor_a2 - arm_length_1_squared_minus_arm_length_2_squared - span_1_z*span_1_z
+                - span_2_x*span_2_x - span_2_y*span_2_y
+            )
             /(swing_scale_a2*swing_scale_a2)
         )
         if sine_square_a2 > 0.0:
@@ -842,14 +854,20 @@ def unrolled(k: Constants) -> Unrolled:
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
-        if not (effective_a3 > constant_part_5):
+        if not (effective_a3 > share_of_arm_length_1):
             return None
-        divisor_a3 = effective_a3 if effective_a3 > constant_part_5 else 1.0
+        divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
         # kept as a product
         sine_square_a3 = (
-            (constant_part_7 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)
-            *(arm_length_1*divisor_a3 - constant_part_7 - span_1_z*span_1_z - span_2_x*span_2_x - span_3_y*span_3_y)
+            (
+                arm_length_1_squared_minus_arm_length_2_squared + arm_length_1*divisor_a3 + span_1_z*span_1_z
+                + span_2_x*span_2_x + span_3_y*span_3_y
+            )
+            *(
+                arm_length_1*divisor_a3 - arm_length_1_squared_minus_arm_length_2_squared - span_1_z*span_1_z
+                - span_2_x*span_2_x - span_3_y*span_3_y
+            )
             /(swing_scale_a3*swing_scale_a3)
         )
         if sine_square_a3 > 0.0:
@@ -859,9 +877,9 @@ def unrolled(k: Constants) -> Unrolled:
             if not (sine_square_a3 >= -1e-12):
                 return None
             sin_swing_a3 = 0.0
-        cos_swing_a1 = (-constant_part_7 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
+        cos_swing_a1 = (-arm_length_1_squared_minus_arm_length_2_squared - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
-        pivot_1_x = -arm_1_radius_minus_constant_part - arm_length_1*cos_a1  # rod 1
+        pivot_1_x = -constant_part - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         # rod 1
@@ -875,11 +893,17 @@ def unrolled(k: Constants) -> Unrolled:
             - arm_length_1*sin_a1
         )
         rod_1_z = z - pivot_1_z
-        cos_swing_a2 = (constant_part_7 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y)/swing_scale_a2
+        cos_swing_a2 = (
+            (
+                arm_length_1_squared_minus_arm_length_2_squared + span_1_z*span_1_z + span_2_x*span_2_x
+                + span_2_y*span_2_y
+            )
+            /swing_scale_a2
+        )
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = -constant_part_4 - constant_part_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_4 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
         # rod 2
@@ -893,11 +917,17 @@ def unrolled(k: Constants) -> Unrolled:
             - arm_length_1*sin_a2
         )
         rod_2_z = z - pivot_2_z
-        cos_swing_a3 = (constant_part_7 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y)/swing_scale_a3
+        cos_swing_a3 = (
+            (
+                arm_length_1_squared_minus_arm_length_2_squared + span_1_z*span_1_z + span_2_x*span_2_x
+                + span_3_y*span_3_y
+            )
+            /swing_scale_a3
+        )
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
         pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = constant_part_4 + constant_part_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_4 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
         # rod 3
@@ -925,10 +955,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 2
-        if not (abs(constant_part_6*y + constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length_2*y + root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return None
         # ball joint of rod 3
-        if not (abs(constant_part_6*y - constant_part_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
+        if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return None
         return (
             offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN,
