@@ -31,7 +31,12 @@ class _Direction:
     square: sp.Expr
 
     def part_of(self, value: sp.Expr) -> tuple[sp.Expr, sp.Expr] | None:
-        """The terms of a value that are proportional to the names, and what they are where the condition holds."""
+        """The terms of a value that are proportional to the names, and what they are where the condition holds.
+
+        Terms as they stand: nothing else of the value is written out.
+        """
+        terms = [term for term in sp.Add.make_args(value) if symbols_of(term) & set(self.names)]
+        value = sp.Add(*terms)
         if not symbols_of(value) >= set(self.names) or not value.is_polynomial(*self.names):
             return None
         if sp.Poly(value, *self.names).total_degree() != 1:
@@ -41,7 +46,7 @@ class _Direction:
         known = sp.cancel(made / self.square)
         if not known.is_polynomial():
             return None
-        return sp.Add(*[f * name for f, name in zip(factors, self.names, strict=True)]), known
+        return value, known
 
 
 def aimed(program: Program) -> Program:
@@ -62,7 +67,7 @@ def _seen(body: Iterable[Statement], direction: _Direction, taken: Names) -> Ite
             if part not in points:
                 points[part] = taken.fresh(direction.names[0].name.replace("cos_", "point_from_", 1))
                 yield Let(points[part], Select(direction.condition, known, part))
-            statement = replace(statement, value=sp.expand(statement.value - part) + points[part])
+            statement = replace(statement, value=statement.value - part + points[part])
         yield statement
 
 

@@ -47,11 +47,13 @@ def with_fewer_signs(program: Program) -> Program:
     """The program with opposites of sums, products and angles wherever that takes minus signs away."""
     taken, turns_are_free = Names.of(program), turnless(program)
     body, outputs = list(program.body), list(program.outputs)
+    opposites: set[sp.Symbol] = set()
+    """What is an opposite already: SymPy orders terms by name, so that one may seem to save signs both ways."""
     place = 0
     while place < len(body):
         let = body[place]
         place += 1
-        opposite = _opposite(let, turns_are_free) if isinstance(let, Let) else None
+        opposite = _opposite(let, turns_are_free) if isinstance(let, Let) and let.name not in opposites else None
         if not isinstance(let, Let) or opposite is None:
             continue
         reads_opposite = {let.name: -let.name}
@@ -60,6 +62,7 @@ def with_fewer_signs(program: Program) -> Program:
         if saved + _signs_in(let.value) <= _signs_in(opposite):
             continue
         name = taken.fresh(_opposite_name(let.name.name))
+        opposites.add(name)
         turns_are_free |= {name} if let.name in turns_are_free else set()
         body[place - 1] = Let(name, opposite, let.note)
         body = [_with(s, {let.name: -name}) for s in body]

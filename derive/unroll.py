@@ -182,7 +182,7 @@ class _Unroller:
                 by_support.setdefault(self._union(reads(condition)), []).append(condition)
             for support in sorted(by_support, key=lambda s: (len(s), s)):
                 if not support and refusal.status in (None, status):
-                    self.body += by_support[support]  # all branches alike
+                    self.body += [self._at(condition, (), ()) for condition in by_support[support]]  # all branches alike
                 else:
                     refusal = self._refused(refusal, support, by_support[support])
         return {choice: refusal.at(choice) for choice in choices(len(self.signs))}

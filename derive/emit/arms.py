@@ -67,7 +67,7 @@ def spared(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...
             needed = later.union(*(_reads_where(other, item.condition) for other in items[place + 1 :]))
             read = needed.union(*(_reads_somewhere(inner) for inner in item.holds))
             kept = tuple(i for i in item.holds if not isinstance(i, Let) or i.name in read)
-            item = replace(item, holds=kept)
+            item = replace(item, holds=kept or item.holds)  # a side has a statement
         found.append(item)
     return tuple(found)
 

@@ -46,11 +46,17 @@ def _root_of(require: Require, later: Sequence[Statement], known: Mapping[sp.Bas
     condition = require.condition
     if not isinstance(condition, sp.GreaterThan) or not condition.lhs.is_Symbol:
         return None
-    if not _is_never_positive(condition.rhs.xreplace(known)):
+    bound = condition.rhs
+    while symbols_of(bound) & known.keys():
+        bound = bound.xreplace(known)
+    if not _is_never_positive(bound):
         return None
     unknown = {name for statement in later for name in binds(statement)}
     takers = [s for s in later if isinstance(s, Let) and s.value.has(Root(condition.lhs))]
-    return takers[0] if takers and not symbols_of(takers[0].value) & unknown else None
+    if not takers or symbols_of(takers[0].value) & unknown:
+        return None
+    vanished = takers[0].value.xreplace({Root(condition.lhs): sp.Integer(0)})
+    return None if vanished.has(sp.zoo, sp.nan) else takers[0]
 
 
 def _choice(require: Require, root: Let) -> Arms:

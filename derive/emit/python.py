@@ -57,8 +57,6 @@ _EXPORTS = (
 _ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Vector", "passed", "require")
 _ARRAY_HELPERS = ("Real", "atan2", "degrees", "elsewhere", "refused", "root", "sqrt")
 """What programs on arrays call or name, depending on how an expression is spelled."""
-_FUNCTION_TYPES = ("Branch", "Branches", "EveryBranch")
-"""Of the functions that a machine makes once."""
 _CHUNK = 8192
 """Rows of a batch at a time: 64 KiB an array."""
 _MEANINGS = {
@@ -130,7 +128,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "setup": setup,
         "array_programs": array_programs,
         "bases": _bases(kin),
-        "core_types": sorted({"Image", "Pose", *(_FUNCTION_TYPES if can_be_unrolled(kin) else ()), *_core(kin)}),
+        "core_types": sorted({"Image", "Pose", *(["InnerLoop"] if can_be_unrolled(kin) else ()), *_core(kin)}),
         "types": _types(kin, scalar),
         "primitives": primitives_in(line for body in (*bodies, setup.setup_body(kin)) for line in body),
         "is_unrolled": can_be_unrolled(kin),
@@ -189,7 +187,8 @@ def _core(kin: Kinematics) -> Sequence[str]:
 
 def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
     kinds = {m.kind for m in used if m.kind} | {a.kind for m in used for a in m.arguments}
-    lean = {"ConfigurationByte"} if kin.configuration_size else set()
+    lean = {"PlainFrame", "Reals", "Rotation", "Vector"} if can_be_unrolled(kin) else set()
+    lean |= {"ConfigurationByte"} if kin.configuration_size else set()
     lean |= {"Axis"} if kin.mechanism.joints else set()
     return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Diagnosis", "Parameter", "Reals", "Status"} | lean)
 

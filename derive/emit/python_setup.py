@@ -51,14 +51,13 @@ def tested_limits(kin: Kinematics) -> list[str]:
     bounds = [(name, -1) for name in constants(kin) if name.startswith("lowest_")]
     bounds += [(name, 1) for name in constants(kin) if name.startswith("highest_")]
     values = ", ".join(f"{name}={literal(side * float(UNLIMITED))}" for name, side in bounds)
-    functions = "self._every_branch, self.branches, self.branch"
     if not bounds:
-        return [f"{functions} = unrolled(self._constants)"]
+        return ["self._unrolled = unrolled(self._constants)"]
     return [
         "tested = self._constants",
         "if not self.checks_limits:",
         *fold(f"tested = tested._replace({values})", 4),
-        f"{functions} = unrolled(tested)",
+        "self._unrolled = unrolled(tested)",
     ]
 
 

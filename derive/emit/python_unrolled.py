@@ -135,7 +135,8 @@ def _constants(kin: Kinematics) -> frozenset[str]:
 def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers."""
     methods, parts = _with_constant_parts(kin, _methods(kin))
-    functions = (_slots(kin, methods[0], parts), _directions(kin, methods[1], parts), _direction(methods[2], parts))
+    known = (*kin.setup.lets(), *parts)
+    functions = (_slots(kin, methods[0], known), _directions(kin, methods[1], known), _direction(methods[2], known))
     read = {c for m in methods for c in constants_of(m)} | {s.name for p in parts for s in symbols_of(p.value)}
     constants = sorted(read - {p.name.name for p in parts})
     lines = [line for part in parts for line in let_lines(part, _SCALAR)]
@@ -170,22 +171,22 @@ def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
     )  # fmt: skip
 
 
-def _slots(kin: Kinematics, method: Method, parts: Sequence[Let]) -> Function:
+def _slots(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
     """The checked function."""
     count = 2 ** len(kin.branches)
     refusals = Refusals(lambda status: repeated(f"{list(Status).index(status)}.0", count))
-    written = _Written.of(method, parts)
+    written = _Written.of(method, known)
     return written.function(_every(kin, written, refusals, _SCALAR, lambda refusal: refusal))
 
 
-def _directions(kin: Kinematics, method: Method, parts: Sequence[Let]) -> Function:
+def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
     refusals = Refusals(lambda _: repeated("None", 2 ** len(kin.branches)))
-    written = _Written.of(method, parts)
+    written = _Written.of(method, known)
     return written.function(_every(kin, written, refusals, _DIRECTIONS, lambda _: "None"))
 
 
-def _direction(method: Method, parts: Sequence[Let]) -> Function:
-    written = _Written.of(method, parts)
+def _direction(method: Method, known: Sequence[Let]) -> Function:
+    written = _Written.of(method, known)
     lines = item_lines(written.items, Refusals(lambda _: "None"), _DIRECTIONS)
     values = tuple_of([_DIRECTIONS.print(value) for value in written.values.values()])
     return written.function([*lines, *fold(f"return {values}")])
@@ -201,10 +202,10 @@ class _Written:
     """The outputs."""
 
     @classmethod
-    def of(cls, method: Method, parts: Sequence[Let]) -> _Written:
-        """parts: what the constants are that it reads."""
+    def of(cls, method: Method, known: Sequence[Let]) -> _Written:
+        """known: what the constants are that it reads."""
         wanted = [o.value for o in method.program.outputs]
-        items = spared(in_arms(guarded(method.program.body, parts), wanted), wanted)
+        items = spared(in_arms(guarded(method.program.body, known), wanted), wanted)
         items, values = written_where_read(items, wanted)
         return cls(method, items, {o.name: o.value.xreplace(dict(values)) for o in method.program.outputs})
 

@@ -7,7 +7,8 @@
     angle = angle_of_x - angle_of_v
 
 It serves a language in which a name costs time. A choice reads on one of its sides, so that what is read once on each is
-written on each. The values are the same: nothing is reordered. What has a note keeps its name, and so does a choice.
+written on each. Products are not regrouped; terms of a sum may be added in another order. What has a note keeps its name, and
+so does a choice.
 """
 
 from __future__ import annotations

@@ -59,8 +59,8 @@ def _beside(
     note: str,
 ) -> Binding:
     along, across, beside, distance = row
-    ahead, square = real(f"ahead_{angle.name}"), real(f"ahead_squared_{angle.name}")
-    divisor = real(f"divisor_{angle.name}")
+    words = ("ahead", "ahead_squared", "divisor", "rounding")
+    ahead, square, divisor, rounding = (real(f"{word}_{angle.name}") for word in words)
     shortest = FREE_ANGLE * problem.scale
     determined = sp.Gt(distance, shortest)
     cos_free, sin_free = free_angle(problem, angle)
@@ -68,9 +68,10 @@ def _beside(
     sin_value = (across * beside + along * ahead) / divisor
     statements: tuple[Statement, ...] = (
         *naming.lets,
+        Let(rounding, BOUNDARY * shortest**2, "what rounding may leave of a square of lengths"),
         Let(square, (distance - beside) * (distance + beside), note),
-        Require(sp.Ge(square, -BOUNDARY * (distance**2 + shortest**2)), Status.UNREACHABLE, f"{angle.name}: out of reach"),
-        Let(ahead, slope.sigma * Root(square), "how far ahead of the axis the point is"),
+        Require(sp.Ge(square, -BOUNDARY * distance**2 - rounding), Status.UNREACHABLE, f"{angle.name}: out of reach"),
+        Let(ahead, slope.sigma * Root(square), "how far ahead of the axis the point is; negative: behind"),
         Let(divisor, Select(determined, distance**2, sp.Integer(1))),
         Let(cosine(angle), Select(determined, cos_value, cos_free), "its reference where it is free"),
         Let(sine(angle), Select(determined, sin_value, sin_free)),

@@ -43,6 +43,14 @@ def test_a_multiple_of_the_point_too_and_once() -> None:
     same(twice, aimed(twice))
 
 
+def test_what_stands_beside_is_not_written_out() -> None:
+    """A discriminant stays a product: expanded it loses half its digits."""
+    product = (L - B) * (L + B)
+    program = of(Let(real("one"), product + X * C + Y * S), Let(real("two"), Root(product) + X * C + Y * S))
+    found, point = values(aimed(program)), real("point_from_q1")
+    assert found["one"] == product + point and found["two"] == Root(product) + point
+
+
 def test_another_point_is_not_known() -> None:
     for value in (X * C + 2 * Y * S, X * C - Y * S, X * C + Y * S**2, X * C, L * C + B * S):
         program = of(Let(real("other"), value))

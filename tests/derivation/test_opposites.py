@@ -59,6 +59,15 @@ def test_an_angle_whose_turn_counts_stays() -> None:
     assert found["angle"] == Atan2(-real("minus_s"), C)
 
 
+def test_it_ends_where_a_difference_of_angles_is_read_with_a_minus() -> None:
+    """SymPy takes the sign out of sin(a - b) by the names, so that either angle seems to save signs, and again."""
+    for first, second in (("angle_q2", "angle_q3"), ("angle_of_arm", "angle_of_wrist"), ("a1", "b1")):
+        p, q = real(first), real(second)
+        lets = (Let(p, Atan2(S, C)), Let(q, Atan2(X, Y)), Let(A, -L * sp.sin(p - q)), Let(B, -Y * sp.sin(p - q)))
+        program = of(*lets, outputs=(A, B))
+        same(program, with_fewer_signs(program))
+
+
 def test_opposites_of_opposites_have_their_first_name() -> None:
     program = of(Let(real("minus_s"), -X * Y), Let(A, -L * real("minus_s")), outputs=(A,))
     assert values(with_fewer_signs(program)) == {"s": X * Y, "a": L * S}

@@ -75,6 +75,14 @@ def test_a_condition_without_a_sign_stays_one() -> None:
     assert all(o.value == 0 for o in found.outputs if o.name.startswith(REFUSAL))
 
 
+def test_a_condition_reads_what_stands_for_a_name() -> None:
+    """Nothing is bound to a negative of a name: who read it reads that, a condition too."""
+    body = (Let(A, -X), Require(sp.Gt(A, -1), Status.UNREACHABLE), Let(B, A + ELBOW.symbol))
+    found = unroll(program(*body, outputs={"o": B}), (ELBOW,))
+    assert [r.condition for r in found.requires()] == [sp.Gt(-X, -1)]
+    assert found.inputs == (X,)
+
+
 def test_the_refusal_of_a_slot_is_its_first_condition_that_does_not_hold() -> None:
     """Also where a later condition has no sign: it may not refuse before an earlier one with another status."""
     body = (

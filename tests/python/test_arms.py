@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.emit.arms import Arms, Item, in_arms
+from derive.emit.arms import Arms, Item, in_arms, spared
 from derive.program import Let, Require, Root, Select, Status, real
 
 A, B, C, D, E, F, R, X, Y = (real(n) for n in "abcdefrxy")
@@ -94,6 +94,13 @@ def test_what_only_second_sides_read_is_bound_on_each_of_them() -> None:
         Let(E, Select(NEAR, Y + 1, D + B)),
     ]
     assert shape(in_arms(body, [A, B, C, E])) == [(REGULAR, [A, B], [D, A, B]), (NEAR, [C, E], [D, C, E])]
+
+
+def test_a_side_keeps_a_statement() -> None:
+    """Nothing reads A where the condition holds: the side is bound all the same, because a side cannot be empty."""
+    choice = Arms(REGULAR, (Let(A, X),), (Let(A, Y),), (A,))
+    later = Arms(REGULAR, (Let(B, X),), (Let(B, A + 1),), (B,))
+    assert spared([choice, later], [B]) == (choice, later)
 
 
 def test_a_single_choice_stays_an_expression() -> None:

@@ -45,6 +45,11 @@ def test_a_root_that_is_known_later_is_not_taken_before_the_condition() -> None:
     assert isinstance(guarded(between)[1], Arms) and guarded(between)[2] == between[2]
 
 
+def test_a_root_that_something_is_divided_by_is_taken_as_it_was() -> None:
+    body = (SQUARE, asked(sp.Integer(-1)), Let(A, R / Root(S)))
+    assert guarded(body) == body
+
+
 def test_another_comparison_is_always_asked() -> None:
     for condition in (sp.Le(S, 1), sp.Gt(S, -1), sp.Ge(S + X, -1)):
         body = (SQUARE, Require(condition, Status.UNREACHABLE), ROOT)

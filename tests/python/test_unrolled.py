@@ -134,6 +134,27 @@ def test_rows_in_chunks_are_the_rows_alone(name: str) -> None:
         np.testing.assert_allclose(axes[row], alone[0], rtol=1e-12, atol=1e-12)
 
 
+@pytest.mark.parametrize("name", ["Kin_ArticulatedRobot_6DOF", "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"])
+def test_the_functions_of_an_inner_loop(name: str) -> None:
+    """They answer as the methods do, which can be sent to another process."""
+    robot = robot_of(next(d for d in DESCRIPTIONS if d.name == name))
+    (frame,), _ = samples(robot, 1)
+    plain, signs = (tuple(frame[0]), frame[1]), (1.0,) * robot.BRANCHES
+    loop = robot.inner_loop
+    assert loop.branches(plain) == robot.branches(plain) == pickle.loads(pickle.dumps(robot.branches))(plain)  # type: ignore[arg-type]
+    assert loop.branch(plain, signs, None) == robot.branch(plain, signs)  # type: ignore[arg-type]
+    assert loop.branch(plain, signs) == loop.branch(plain, signs, (0.0,) * 6)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["Kin_Ac6_ThreeParallel", "Kin_ArticulatedRobot_6DOF"])
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -1e300, 1e154])
+def test_trusted_calls_do_not_raise_for_what_is_no_pose(name: str, value: float) -> None:
+    robot = robot_of(next(d for d in DESCRIPTIONS if d.name == name))
+    for place in range(3):
+        position = tuple(value if i == place else 300.0 for i in range(3))
+        robot.branches((position, IDENTITY))  # type: ignore[arg-type]
+
+
 def test_the_solutions_are_as_a_tuple_of_them() -> None:
     robot = robot_of(next(d for d in DESCRIPTIONS if d.name == "Kin_ArticulatedRobot_6DOF"))
     (frame,), _ = samples(robot, 1)

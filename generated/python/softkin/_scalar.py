@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import atan2 as arctan2
-from math import cos, floor, pi, sin, sqrt
+from math import cos, floor, nan, pi, sin, sqrt
 
 __all__ = [
     "DEGREE", "RADIAN", "arctan2", "atan2", "cos", "nearest_on_arc", "nearest_period", "root", "sin", "solve", "sqrt",
@@ -16,6 +16,8 @@ DEGREE = pi / 180.0
 RADIAN = 180.0 / pi
 """One radian in degrees."""
 _TURN = 2.0 * pi
+_MOST_TURNS = 1e18
+"""More turns are no number of turns: then there is no nearest angle."""
 _HALF_AND_EDGE = 180.0 + 1e-9
 
 
@@ -34,13 +36,17 @@ def nearest_period(value: float, centre: float) -> float:
 
     A value on an edge so stays on its side in spite of rounding.
     """
-    return value - 360.0 * floor((value - centre + _HALF_AND_EDGE) / 360.0)
+    turns = (value - centre + _HALF_AND_EDGE) / 360.0
+    return value - 360.0 * floor(turns) if -_MOST_TURNS < turns < _MOST_TURNS else nan
 
 
 def nearest_on_arc(angle: float, centre: float, half: float) -> float:
     """The angle of the arc centre ± half that is nearest to angle, in radians."""
     delta = angle - centre
-    delta -= _TURN * floor((delta + pi) / _TURN)
+    turns = (delta + pi) / _TURN
+    if not -_MOST_TURNS < turns < _MOST_TURNS:
+        return nan
+    delta -= _TURN * floor(turns)
     return centre + min(max(delta, -half), half)
 
 

@@ -62,7 +62,6 @@ if TYPE_CHECKING:
     from softkin._array import Programs
 
 
-
 class Constants(NamedTuple):
     """What depends on the parameters alone: computed once, read by every program."""
 

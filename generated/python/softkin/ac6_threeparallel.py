@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 172 additions, 167 multiplications, 35 divisions, 9 square roots, 18 sines
-    inverse, all 8 branches open: 1369 additions, 1336 multiplications, 280 divisions, 72 square roots, 144 sines
+    inverse: 172 additions, 165 multiplications, 35 divisions, 9 square roots, 18 sines
+    inverse, all 8 branches open: 1369 additions, 1320 multiplications, 280 divisions, 72 square roots, 144 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -43,16 +43,15 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Branch, Branches, EveryBranch, Image, Mechanism, Pose
+from softkin._core import Image, InnerLoop, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.ac6_threeparallel import unrolled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
-
 
 
 class Constants(NamedTuple):
@@ -114,6 +113,7 @@ class Constants(NamedTuple):
     single_a6: float
     mid_a6: float
     machine_scale: float
+    rounding_q1: float
     size_q6_of_q3: float
     scale_q3: float
 
@@ -124,13 +124,7 @@ class Ac6ThreeParallel(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_every_branch", "branch", "branches")
-
-    branch: Branch
-    """One branch for inner loops: see `Mechanism.branch`."""
-    branches: Branches
-    """Every branch for inner loops: see `Mechanism.branches`."""
-    _every_branch: EveryBranch
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Ac6_ThreeParallel"
     AXES = (
@@ -312,7 +306,7 @@ class Ac6ThreeParallel(Mechanism):
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, lowest_a5=-1e12, lowest_a6=-1e12,
                 highest_a1=1e12, highest_a2=1e12, highest_a3=1e12, highest_a4=1e12, highest_a5=1e12, highest_a6=1e12,
             )
-        self._every_branch, self.branches, self.branch = unrolled(tested)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, d1: float, a2: float, a3: float, d4: float, d5: float, d6: float, offset_a1: float,
@@ -436,6 +430,7 @@ class Ac6ThreeParallel(Mechanism):
         single_a6 = 1.0 if (unlimited_a6 <= 0.0) and (effective_upper_a6 - effective_lower_a6 <= 360.0) else 0.0
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = abs(a2) + abs(a3)  # a length of the machine
+        rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
         size_q6_of_q3 = 2.0*abs(a2*a3)
         scale_q3 = 2.0*a2*a3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         return Constants(
@@ -451,7 +446,7 @@ class Ac6ThreeParallel(Mechanism):
             upper_a5=effective_upper_a5, unlimited_a5=unlimited_a5, lowest_a5=lowest_a5, highest_a5=highest_a5,
             single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6, upper_a6=effective_upper_a6,
             unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6, single_a6=single_a6, mid_a6=mid_a6,
-            machine_scale=machine_scale, size_q6_of_q3=size_q6_of_q3, scale_q3=scale_q3,
+            machine_scale=machine_scale, rounding_q1=rounding_q1, size_q6_of_q3=size_q6_of_q3, scale_q3=scale_q3,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -620,6 +615,7 @@ class Ac6ThreeParallel(Mechanism):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        rounding_q1 = k.rounding_q1
         scale_q3 = k.scale_q3
         single_a1 = k.single_a1
         single_a2 = k.single_a2
@@ -652,11 +648,11 @@ class Ac6ThreeParallel(Mechanism):
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
+        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
             return Status.UNREACHABLE
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            # how far ahead of the axis the point is
+            # how far ahead of the axis the point is; negative: behind
             ahead_q1 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_shoulder
             divisor_q1 = distance_q1*distance_q1
             cos_q1 = (ahead_q1*wrist_x - d4*wrist_y)/divisor_q1
@@ -1020,6 +1016,22 @@ class Ac6ThreeParallel(Mechanism):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    @property
+    def inner_loop(self) -> InnerLoop:
+        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
+        return self._unrolled.inner_loop
+
+    def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.inner_loop.branches(frame, reference)
+
+    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.inner_loop.branch(frame, signs, reference)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

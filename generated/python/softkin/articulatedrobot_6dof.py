@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 66 additions, 68 multiplications, 8 divisions, 0 square roots, 14 sines
-    inverse: 135 additions, 135 multiplications, 28 divisions, 6 square roots, 12 sines
-    inverse, all 8 branches open: 1073 additions, 1080 multiplications, 224 divisions, 48 square roots, 96 sines
+    inverse: 135 additions, 133 multiplications, 28 divisions, 6 square roots, 12 sines
+    inverse, all 8 branches open: 1073 additions, 1064 multiplications, 224 divisions, 48 square roots, 96 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -43,16 +43,15 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Branch, Branches, EveryBranch, Image, Mechanism, Pose
+from softkin._core import Image, InnerLoop, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.articulatedrobot_6dof import unrolled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
-
 
 
 class Constants(NamedTuple):
@@ -116,6 +115,7 @@ class Constants(NamedTuple):
     mid_a6: float
     machine_scale: float
     effective_q3: float
+    rounding_q1: float
     swing_scale_q3: float
 
 
@@ -125,13 +125,7 @@ class ArticulatedRobot6DOF(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_every_branch", "branch", "branches")
-
-    branch: Branch
-    """One branch for inner loops: see `Mechanism.branch`."""
-    branches: Branches
-    """Every branch for inner loops: see `Mechanism.branches`."""
-    _every_branch: EveryBranch
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
     AXES = (
@@ -318,7 +312,7 @@ class ArticulatedRobot6DOF(Mechanism):
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, lowest_a5=-1e12, lowest_a6=-1e12,
                 highest_a1=1e12, highest_a2=1e12, highest_a3=1e12, highest_a4=1e12, highest_a5=1e12, highest_a6=1e12,
             )
-        self._every_branch, self.branches, self.branch = unrolled(tested)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, d1: float, a1: float, a2: float, d3: float, a3: float, d4: float, d6: float, offset_a1: float,
@@ -445,6 +439,7 @@ class ArticulatedRobot6DOF(Mechanism):
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = a1 + a2 + a3 + d4  # a length of the machine
         effective_q3 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
+        rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
         swing_scale_q3 = 2.0*a2*effective_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         return Constants(
             d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, d6=d6, offset_a1=offset_a1, offset_a2=offset_a2,
@@ -460,7 +455,7 @@ class ArticulatedRobot6DOF(Mechanism):
             highest_a5=highest_a5, single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6,
             upper_a6=effective_upper_a6, unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6,
             single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale, effective_q3=effective_q3,
-            swing_scale_q3=swing_scale_q3,
+            rounding_q1=rounding_q1, swing_scale_q3=swing_scale_q3,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -647,6 +642,7 @@ class ArticulatedRobot6DOF(Mechanism):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        rounding_q1 = k.rounding_q1
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -678,11 +674,11 @@ class ArticulatedRobot6DOF(Mechanism):
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
+        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
             return Status.UNREACHABLE
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            # how far ahead of the axis the point is
+            # how far ahead of the axis the point is; negative: behind
             ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
             divisor_q1 = distance_q1*distance_q1
             cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/divisor_q1
@@ -982,6 +978,22 @@ class ArticulatedRobot6DOF(Mechanism):
     def _image(self) -> Image | Status:
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    @property
+    def inner_loop(self) -> InnerLoop:
+        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
+        return self._unrolled.inner_loop
+
+    def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.inner_loop.branches(frame, reference)
+
+    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.inner_loop.branch(frame, signs, reference)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -29,18 +29,17 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Branch, Branches, EveryBranch, Image, Pose
+from softkin._core import Image, InnerLoop, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.caxis_tool import unrolled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import OrientationPrograms
-
 
 
 class Constants(NamedTuple):
@@ -68,13 +67,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_every_branch", "branch", "branches")
-
-    branch: Branch
-    """One branch for inner loops: see `Mechanism.branch`."""
-    branches: Branches
-    """Every branch for inner loops: see `Mechanism.branches`."""
-    _every_branch: EveryBranch
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_CAxis_Tool"
     AXES = (
@@ -142,7 +135,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         tested = self._constants
         if not self.checks_limits:
             tested = tested._replace(lowest_c=-1e12, highest_c=1e12)
-        self._every_branch, self.branches, self.branch = unrolled(tested)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, tool_x: float, tool_y: float, tool_z: float, offset_c: float, lower_c: float, upper_c: float,
@@ -393,6 +386,22 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         cos_heading = heading_along/heading_divisor
         sin_heading = heading_across/heading_divisor
         return ((cos_heading, -sin_heading, 0.0), (sin_heading, cos_heading, 0.0), (0.0, 0.0, 1.0))
+
+    @property
+    def inner_loop(self) -> InnerLoop:
+        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
+        return self._unrolled.inner_loop
+
+    def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.inner_loop.branches(frame, reference)
+
+    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.inner_loop.branch(frame, signs, reference)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -30,18 +30,17 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Branch, Branches, EveryBranch, Image, Pose
+from softkin._core import Image, InnerLoop, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.gantrycutter2 import unrolled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
-
 
 
 class Constants(NamedTuple):
@@ -78,13 +77,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_every_branch", "branch", "branches")
-
-    branch: Branch
-    """One branch for inner loops: see `Mechanism.branch`."""
-    branches: Branches
-    """Every branch for inner loops: see `Mechanism.branches`."""
-    _every_branch: EveryBranch
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_GantryCutter2"
     AXES = (
@@ -181,7 +174,7 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
             tested = tested._replace(
                 lowest_x=-1e12, lowest_y=-1e12, lowest_r=-1e12, highest_x=1e12, highest_y=1e12, highest_r=1e12,
             )
-        self._every_branch, self.branches, self.branch = unrolled(tested)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, direction_r: float, offset_x: float, offset_y: float, offset_r: float, lower_x: float,
@@ -467,6 +460,22 @@ class GantryCutter2(OffsetKinematics, TwistChoice):
         if not (-1e9 <= axis_r <= 1e9 and -1e9 <= axis_x <= 1e9 and -1e9 <= axis_y <= 1e9):
             return Status.BAD_INPUT
         return ()
+
+    @property
+    def inner_loop(self) -> InnerLoop:
+        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
+        return self._unrolled.inner_loop
+
+    def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.inner_loop.branches(frame, reference)
+
+    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.inner_loop.branch(frame, signs, reference)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

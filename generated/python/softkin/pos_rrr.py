@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 30 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
-    inverse: 61 additions, 54 multiplications, 17 divisions, 4 square roots, 7 sines
-    inverse, all 4 branches open: 241 additions, 216 multiplications, 68 divisions, 16 square roots, 28 sines
+    inverse: 61 additions, 52 multiplications, 17 divisions, 4 square roots, 7 sines
+    inverse, all 4 branches open: 241 additions, 208 multiplications, 68 divisions, 16 square roots, 28 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -35,17 +35,16 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Branch, Branches, EveryBranch, Image, Pose
+from softkin._core import Image, InnerLoop, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.pos_rrr import unrolled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
-
 
 
 class Constants(NamedTuple):
@@ -84,6 +83,7 @@ class Constants(NamedTuple):
     mid_a3: float
     machine_scale: float
     effective_q3_2: float
+    rounding_q1: float
     swing_scale_q3_2: float
 
 
@@ -93,13 +93,7 @@ class PosRRR(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_every_branch", "branch", "branches")
-
-    branch: Branch
-    """One branch for inner loops: see `Mechanism.branch`."""
-    branches: Branches
-    """Every branch for inner loops: see `Mechanism.branches`."""
-    _every_branch: EveryBranch
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Pos_RRR"
     AXES = (
@@ -225,7 +219,7 @@ class PosRRR(OffsetKinematics):
             tested = tested._replace(
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
             )
-        self._every_branch, self.branches, self.branch = unrolled(tested)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, d1: float, a1: float, a2: float, d3: float, a3: float, d4: float, offset_a1: float,
@@ -298,6 +292,7 @@ class PosRRR(OffsetKinematics):
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         machine_scale = a1 + a2 + a3 + d4  # a length of the machine
         effective_q3_2 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
+        rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
         swing_scale_q3_2 = 2.0*a2*effective_q3_2  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         return Constants(
             d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
@@ -307,7 +302,7 @@ class PosRRR(OffsetKinematics):
             highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3,
             upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
             single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale, effective_q3_2=effective_q3_2,
-            swing_scale_q3_2=swing_scale_q3_2,
+            rounding_q1=rounding_q1, swing_scale_q3_2=swing_scale_q3_2,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -413,6 +408,7 @@ class PosRRR(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        rounding_q1 = k.rounding_q1
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -426,11 +422,11 @@ class PosRRR(OffsetKinematics):
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
+        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
             return Status.UNREACHABLE
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            # how far ahead of the axis the point is
+            # how far ahead of the axis the point is; negative: behind
             ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
             divisor_q1 = distance_q1*distance_q1
             cos_q1 = (ahead_q1*x - d3*y)/divisor_q1
@@ -665,6 +661,7 @@ class PosRRR(OffsetKinematics):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        rounding_q1 = k.rounding_q1
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -679,7 +676,7 @@ class PosRRR(OffsetKinematics):
         tool_z = d3 + point_y  # the point seen from the last moving joint
         ahead_squared_q1 = (distance_q1 + tool_z)*(distance_q1 - tool_z)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
+        if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
             return Status.UNREACHABLE
         tool_x = a3 + point_x  # the point seen from the last moving joint
         tool_y = -d4 - point_z  # the point seen from the last moving joint
@@ -689,7 +686,7 @@ class PosRRR(OffsetKinematics):
             return Status.UNREACHABLE
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            # how far ahead of the axis the point is
+            # how far ahead of the axis the point is; negative: behind
             ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
             divisor_q1 = distance_q1*distance_q1
             cos_q1 = (ahead_q1*x - tool_z*y)/divisor_q1
@@ -794,6 +791,22 @@ class PosRRR(OffsetKinematics):
         tool_y = -d4 - point_z  # the point seen from the last moving joint
         branch_elbow = (-tool_y*cos_q3 - tool_x*sin_q3)/machine_scale
         return (branch_arm, branch_elbow)
+
+    @property
+    def inner_loop(self) -> InnerLoop:
+        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
+        return self._unrolled.inner_loop
+
+    def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.inner_loop.branches(frame, reference)
+
+    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.inner_loop.branch(frame, signs, reference)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

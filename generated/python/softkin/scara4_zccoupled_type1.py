@@ -34,18 +34,17 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Branch, Branches, EveryBranch, Image, Pose
+from softkin._core import Image, InnerLoop, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._twist import TwistChoice
-from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.scara4_zccoupled_type1 import unrolled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import Programs
-
 
 
 class Constants(NamedTuple):
@@ -95,13 +94,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_every_branch", "branch", "branches")
-
-    branch: Branch
-    """One branch for inner loops: see `Mechanism.branch`."""
-    branches: Branches
-    """Every branch for inner loops: see `Mechanism.branches`."""
-    _every_branch: EveryBranch
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Scara4_ZCcoupled_Type1"
     AXES = (
@@ -229,7 +222,7 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, highest_a1=1e12, highest_a2=1e12,
                 highest_a3=1e12, highest_a4=1e12,
             )
-        self._every_branch, self.branches, self.branch = unrolled(tested)
+        self._unrolled = unrolled(tested)
 
     def _setup(
         self, link_length_1: float, link_length_2: float, pitch_zc: float, offset_a1: float, offset_a2: float,
@@ -712,6 +705,22 @@ class Scara4ZCcoupledType1(OffsetKinematics, TwistChoice):
         tool_y = point_y*cos_a4 + point_x*sin_a4  # the point seen from the last moving joint
         branch_elbow = (tool_y*cos_a2 + tool_x*sin_a2)/machine_scale
         return (branch_elbow,)
+
+    @property
+    def inner_loop(self) -> InnerLoop:
+        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
+        return self._unrolled.inner_loop
+
+    def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.inner_loop.branches(frame, reference)
+
+    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.inner_loop.branch(frame, signs, reference)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

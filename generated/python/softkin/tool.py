@@ -27,17 +27,16 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Branch, Branches, EveryBranch, Image, Pose
+from softkin._core import Image, InnerLoop, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import sqrt
-from softkin._types import Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
+from softkin._types import Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.tool import unrolled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from softkin._array import OrientationPrograms
-
 
 
 class Constants(NamedTuple):
@@ -56,13 +55,7 @@ class Tool(OrientationKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_every_branch", "branch", "branches")
-
-    branch: Branch
-    """One branch for inner loops: see `Mechanism.branch`."""
-    branches: Branches
-    """Every branch for inner loops: see `Mechanism.branches`."""
-    _every_branch: EveryBranch
+    __slots__ = ("_constants", "_unrolled")
 
     NAME = "Kin_Tool"
     AXES = ()
@@ -107,7 +100,7 @@ class Tool(OrientationKinematics):
         """
         values = self._accept(tool_x, tool_y, tool_z, check_limits)
         self._constants = self._setup(*values)
-        self._every_branch, self.branches, self.branch = unrolled(self._constants)
+        self._unrolled = unrolled(self._constants)
 
     def _setup(self, tool_x: float, tool_y: float, tool_z: float, check_limits: float) -> Constants:
         """The constants of the machine."""
@@ -226,6 +219,22 @@ class Tool(OrientationKinematics):
             (flange_axis_x, flange_axis_y, flange_axis_z),
             0.0,
         )
+
+    @property
+    def inner_loop(self) -> InnerLoop:
+        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
+        return self._unrolled.inner_loop
+
+    def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
+        """Every branch for inner loops: see `Mechanism.branches`."""
+        return self._unrolled.inner_loop.branches(frame, reference)
+
+    def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
+        """One branch for inner loops: see `Mechanism.branch`."""
+        return self._unrolled.inner_loop.branch(frame, signs, reference)
+
+    def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
+        return self._unrolled.every_branch(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -167,6 +167,7 @@ class ArrayPrograms(Programs):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        rounding_q1 = k.rounding_q1
         scale_q3 = k.scale_q3
         single_a1 = k.single_a1
         single_a2 = k.single_a2
@@ -217,10 +218,7 @@ class ArrayPrograms(Programs):
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        require(
-            status, ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale,
-            Status.UNREACHABLE,
-        )
+        require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -228,7 +226,7 @@ class ArrayPrograms(Programs):
             sin_q1 = sin(free_a1)
             return (cos_q1, sin_q1)
 
-        ahead_q1 = -root(ahead_squared_q1)*sigma_shoulder  # how far ahead of the axis the point is
+        ahead_q1 = -root(ahead_squared_q1)*sigma_shoulder  # how far ahead of the axis the point is; negative: behind
         divisor_q1 = distance_q1*distance_q1
         cos_q1 = (ahead_q1*wrist_x - d4*wrist_y)/divisor_q1  # its reference where it is free
         sin_q1 = (ahead_q1*wrist_y + d4*wrist_x)/divisor_q1
@@ -524,6 +522,7 @@ class ArrayPrograms(Programs):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        rounding_q1 = k.rounding_q1
         scale_q3 = k.scale_q3
         single_a1 = k.single_a1
         single_a2 = k.single_a2
@@ -574,10 +573,7 @@ class ArrayPrograms(Programs):
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        require(
-            status, ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale,
-            Status.UNREACHABLE,
-        )
+        require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
 
         def elsewhere_cos_q1_left(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -587,7 +583,7 @@ class ArrayPrograms(Programs):
             sin_q1_right = sin_q1_left
             return (cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right)
 
-        ahead_q1_right = root(ahead_squared_q1)  # how far ahead of the axis the point is
+        ahead_q1_right = root(ahead_squared_q1)  # how far ahead of the axis the point is; negative: behind
         divisor_q1 = distance_q1*distance_q1
         cos_q1_left = (-ahead_q1_right*wrist_x - d4*wrist_y)/divisor_q1  # its reference where it is free
         sin_q1_left = (d4*wrist_x - ahead_q1_right*wrist_y)/divisor_q1

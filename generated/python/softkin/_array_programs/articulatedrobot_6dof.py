@@ -175,6 +175,7 @@ class ArrayPrograms(Programs):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        rounding_q1 = k.rounding_q1
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -224,10 +225,7 @@ class ArrayPrograms(Programs):
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        require(
-            status, ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale,
-            Status.UNREACHABLE,
-        )
+        require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -235,7 +233,7 @@ class ArrayPrograms(Programs):
             sin_q1 = sin(free_a1)
             return (cos_q1, sin_q1)
 
-        ahead_q1 = root(ahead_squared_q1)*sigma_arm  # how far ahead of the axis the point is
+        ahead_q1 = root(ahead_squared_q1)*sigma_arm  # how far ahead of the axis the point is; negative: behind
         divisor_q1 = distance_q1*distance_q1
         cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/divisor_q1  # its reference where it is free
         sin_q1 = (ahead_q1*wrist_y + d3*wrist_x)/divisor_q1
@@ -414,6 +412,7 @@ class ArrayPrograms(Programs):
         offset_a4 = k.offset_a4
         offset_a5 = k.offset_a5
         offset_a6 = k.offset_a6
+        rounding_q1 = k.rounding_q1
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -463,10 +462,7 @@ class ArrayPrograms(Programs):
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        require(
-            status, ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale,
-            Status.UNREACHABLE,
-        )
+        require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
 
         def elsewhere_cos_q1_front(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -476,7 +472,7 @@ class ArrayPrograms(Programs):
             sin_q1_back = sin_q1_front
             return (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back)
 
-        ahead_q1_front = root(ahead_squared_q1)  # how far ahead of the axis the point is
+        ahead_q1_front = root(ahead_squared_q1)  # how far ahead of the axis the point is; negative: behind
         divisor_q1 = distance_q1*distance_q1
         cos_q1_front = (ahead_q1_front*wrist_x - d3*wrist_y)/divisor_q1  # its reference where it is free
         sin_q1_front = (ahead_q1_front*wrist_y + d3*wrist_x)/divisor_q1

@@ -124,6 +124,7 @@ class ArrayPrograms(Programs):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        rounding_q1 = k.rounding_q1
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -139,10 +140,7 @@ class ArrayPrograms(Programs):
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        require(
-            status, ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale,
-            Status.UNREACHABLE,
-        )
+        require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
 
         def elsewhere_cos_q1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -150,7 +148,7 @@ class ArrayPrograms(Programs):
             sin_q1 = sin(free_a1)
             return (cos_q1, sin_q1)
 
-        ahead_q1 = root(ahead_squared_q1)*sigma_arm  # how far ahead of the axis the point is
+        ahead_q1 = root(ahead_squared_q1)*sigma_arm  # how far ahead of the axis the point is; negative: behind
         divisor_q1 = distance_q1*distance_q1
         cos_q1 = (ahead_q1*x - d3*y)/divisor_q1  # its reference where it is free
         sin_q1 = (ahead_q1*y + d3*x)/divisor_q1
@@ -252,6 +250,7 @@ class ArrayPrograms(Programs):
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
+        rounding_q1 = k.rounding_q1
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
@@ -267,10 +266,7 @@ class ArrayPrograms(Programs):
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
-        require(
-            status, ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale,
-            Status.UNREACHABLE,
-        )
+        require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
 
         def elsewhere_cos_q1_front(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -280,7 +276,7 @@ class ArrayPrograms(Programs):
             sin_q1_back = sin_q1_front
             return (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back)
 
-        ahead_q1_front = root(ahead_squared_q1)  # how far ahead of the axis the point is
+        ahead_q1_front = root(ahead_squared_q1)  # how far ahead of the axis the point is; negative: behind
         divisor_q1 = distance_q1*distance_q1
         cos_q1_front = (ahead_q1_front*x - d3*y)/divisor_q1  # its reference where it is free
         sin_q1_front = (ahead_q1_front*y + d3*x)/divisor_q1

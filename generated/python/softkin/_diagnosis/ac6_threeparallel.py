@@ -41,6 +41,7 @@ def branch(
     offset_a4 = k.offset_a4
     offset_a5 = k.offset_a5
     offset_a6 = k.offset_a6
+    rounding_q1 = k.rounding_q1
     scale_q3 = k.scale_q3
     single_a1 = k.single_a1
     single_a2 = k.single_a2
@@ -69,7 +70,7 @@ def branch(
     wrist_y = y - d6*r23
     distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
     ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)
-    if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
+    if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
         missing = 0.5*abs(d4 - distance_q1) + 0.5*abs(d4 + distance_q1) - distance_q1
         return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
     if distance_q1 > 1e-11*machine_scale:

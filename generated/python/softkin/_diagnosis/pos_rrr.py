@@ -35,6 +35,7 @@ def branch(
     offset_a1 = k.offset_a1
     offset_a2 = k.offset_a2
     offset_a3 = k.offset_a3
+    rounding_q1 = k.rounding_q1
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
@@ -46,7 +47,7 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     distance_q1 = sqrt(x*x + y*y)
     ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)
-    if not (ahead_squared_q1 >= -1e-12*distance_q1*distance_q1 - 1e-34*machine_scale*machine_scale):
+    if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
         missing = 0.5*abs(d3 - distance_q1) + 0.5*abs(d3 + distance_q1) - distance_q1
         return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
     if distance_q1 > 1e-11*machine_scale:

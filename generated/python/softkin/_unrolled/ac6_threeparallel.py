@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a4 = k.offset_a4
     offset_a5 = k.offset_a5
     offset_a6 = k.offset_a6
+    rounding_q1 = k.rounding_q1
     scale_q3 = k.scale_q3
     single_a1 = k.single_a1
     single_a2 = k.single_a2
@@ -54,7 +55,6 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     size_q6_of_q3 = k.size_q6_of_q3
-    share_of_machine_scale_squared = 1e-34*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_squared_plus_a3_squared = a2*a2 + a3*a3
     size_q6_of_q3_times_rounding = 1e-12*size_q6_of_q3
@@ -92,12 +92,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        # how far ahead of the axis the point is
+        # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
             ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(3.0,)
             ahead_q1 = 0.0
         # its reference where it is free
@@ -931,12 +931,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        # how far ahead of the axis the point is
+        # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
             ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(None,)
             ahead_q1 = 0.0
         # its reference where it is free
@@ -1604,12 +1604,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        # how far ahead of the axis the point is
+        # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
             ahead_q1 = -sqrt(ahead_squared_q1)*sigma_shoulder
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return None
             ahead_q1 = 0.0
         # its reference where it is free
@@ -1754,4 +1754,4 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4, offset_a5 + arctan2(q6_radius_of_q5, cos_q5)*RADIAN, offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN,
         )
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

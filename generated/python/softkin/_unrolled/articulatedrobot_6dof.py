@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a4 = k.offset_a4
     offset_a5 = k.offset_a5
     offset_a6 = k.offset_a6
+    rounding_q1 = k.rounding_q1
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
@@ -55,7 +56,6 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     swing_scale_q3 = k.swing_scale_q3
-    share_of_machine_scale_squared = 1e-34*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_plus_effective_q3 = a2 + effective_q3
     a2_minus_effective_q3 = a2 - effective_q3
@@ -93,12 +93,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        # how far ahead of the axis the point is
+        # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
             ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(3.0,)
             ahead_q1 = 0.0
         # its reference where it is free
@@ -596,12 +596,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        # how far ahead of the axis the point is
+        # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
             ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(None,)
             ahead_q1 = 0.0
         # its reference where it is free
@@ -968,12 +968,12 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        # how far ahead of the axis the point is
+        # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
             ahead_q1 = sqrt(ahead_squared_q1)*sigma_arm
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return None
             ahead_q1 = 0.0
         # its reference where it is free
@@ -1046,4 +1046,4 @@ def unrolled(k: Constants) -> Unrolled:
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN,
         )
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import solve, sqrt
 
 if TYPE_CHECKING:
@@ -867,4 +867,4 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         return (l1 + offset_l1, l2 + offset_l2, l3 + offset_l3, l4 + offset_l4, l5 + offset_l5, l6 + offset_l6)
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

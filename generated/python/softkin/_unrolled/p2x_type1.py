@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import sqrt
 
 if TYPE_CHECKING:
@@ -212,4 +212,4 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         return (a1 + offset_a1, a2 + offset_a2)
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import sqrt
 
 if TYPE_CHECKING:
@@ -99,4 +99,4 @@ def unrolled(k: Constants) -> Unrolled:
         a1 = 2.0*x - a2  # a1: affine in the x equation
         return (a1 + offset_a1, a2 + offset_a2)
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 
 if TYPE_CHECKING:
     from softkin._types import PlainFrame, Reals, Rotation, Vector
@@ -79,4 +79,4 @@ def unrolled(k: Constants) -> Unrolled:
         a1 = x + y  # a1, a2: affine in the x and y equations
         return (a1 + offset_a1, offset_a2 + (y - x))
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -189,4 +189,4 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2 = offset_a2 + (angle_a1 + arctan2(sin_a2_from_a1, cos_a2_from_a1))*RADIAN
         return (offset_a1 + angle_a1*RADIAN, axis_a2)
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -99,4 +99,4 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_c = sin(free_c)
         return (offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN, offset_r + radius_c)
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -35,11 +35,11 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a1 = k.offset_a1
     offset_a2 = k.offset_a2
     offset_a3 = k.offset_a3
+    rounding_q1 = k.rounding_q1
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
-    share_of_machine_scale_squared = 1e-34*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_plus_effective_q3_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2 = a2 - effective_q3_2
@@ -59,12 +59,12 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(2.0,)
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        # how far ahead of the axis the point is
+        # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
             ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 4*(3.0,)
             ahead_q1 = 0.0
         # its reference where it is free
@@ -223,12 +223,12 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        # how far ahead of the axis the point is
+        # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
             ahead_q1 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 4*(None,)
             ahead_q1 = 0.0
         # its reference where it is free
@@ -337,12 +337,12 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
-        # how far ahead of the axis the point is
+        # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
             ahead_q1 = sqrt(ahead_squared_q1)*sigma_arm
         else:
             # q1: out of reach
-            if not (ahead_squared_q1 >= -share_of_machine_scale_squared - 1e-12*distance_q1*distance_q1):
+            if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return None
             ahead_q1 = 0.0
         # its reference where it is free
@@ -384,4 +384,4 @@ def unrolled(k: Constants) -> Unrolled:
             offset_a3 + (angle_of_a3_by_effective_q3_2 - arctan2(minus_sin_swing_q3, cos_swing_q3))*RADIAN,
         )
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

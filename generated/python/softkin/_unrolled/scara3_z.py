@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -239,4 +239,4 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3 = offset_a3 + (arctan2(sin_heading, cos_heading) - angle_a1 - angle_a2)*RADIAN
         return (offset_a1 + angle_a1*RADIAN, offset_a2 + angle_a2*RADIAN, axis_a3, offset_z + z)
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -243,4 +243,4 @@ def unrolled(k: Constants) -> Unrolled:
         a3 = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
         return (offset_a1 + angle_a1*RADIAN, offset_a2 + angle_a2*RADIAN, a3 + offset_a3, axis_a4)
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

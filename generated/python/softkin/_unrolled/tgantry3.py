@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 
 if TYPE_CHECKING:
     from softkin._types import PlainFrame, Reals, Rotation, Vector
@@ -75,4 +75,4 @@ def unrolled(k: Constants) -> Unrolled:
         a = x - y  # a, b: affine in the x and y equations
         return (a + offset_a, offset_b + (x + y), offset_z + z)
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

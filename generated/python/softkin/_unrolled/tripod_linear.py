@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import root, sqrt
 
 if TYPE_CHECKING:
@@ -610,4 +610,4 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         return (offset_a1 - minus_a1, a2 + offset_a2, a3 + offset_a3)
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))

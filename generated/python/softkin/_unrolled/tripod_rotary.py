@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import Unrolled
+from softkin._core import InnerLoop, Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, root, sqrt
 
 if TYPE_CHECKING:
@@ -965,4 +965,4 @@ def unrolled(k: Constants) -> Unrolled:
             offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN,
         )
 
-    return Unrolled(every_branch, branches, branch)
+    return Unrolled(every_branch, InnerLoop(branches, branch))
