@@ -88,11 +88,10 @@ def _ours(table: Table) -> list[Contender]:
         return _rows([[s.axes for s in slots if s.axes is not None] for slots in solutions])
 
     return [
-        Contender("softkin inner_loop.branches(frame)", ALL, plain, robot.inner_loop.branches, _slots),
+        Contender("softkin branches(frame)", ALL, plain, robot.branches, _slots),
         Contender("softkin inverse_all(frame), checked", ALL, frames, robot.inverse_all, looked_at),
         Contender("softkin tuple(inverse_all(frame))", ALL, frames, lambda f: tuple(robot.inverse_all(f)), looked_at),
-        Contender("softkin inner_loop.branch(frame, signs)", ONE, chosen, robot.inner_loop.branch, _single),
-        Contender("softkin branch(frame, signs), the method", ONE, chosen, robot.branch, _single),
+        Contender("softkin branch(frame, signs)", ONE, chosen, robot.branch, _single),
         Contender("softkin inverse(frame, configuration), checked", ONE, named, robot.inverse, _single),
         Contender("softkin inverse_batch, one solution", BATCH, configured, lambda p: robot.inverse_batch(*p), _batch),
         Contender("softkin inverse_all_batch, all solutions", BATCH, arrays, lambda p: robot.inverse_all_batch(*p), every),

@@ -128,7 +128,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "setup": setup,
         "array_programs": array_programs,
         "bases": _bases(kin),
-        "core_types": sorted({"Image", "Pose", *(["InnerLoop"] if can_be_unrolled(kin) else ()), *_core(kin)}),
+        "core_types": sorted({"Image", "Pose", *_core(kin)}),
         "types": _types(kin, scalar),
         "primitives": primitives_in(line for body in (*bodies, setup.setup_body(kin)) for line in body),
         "is_unrolled": can_be_unrolled(kin),

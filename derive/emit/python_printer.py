@@ -16,7 +16,7 @@ from derive.program import DEGREE, Atan2, Root, Select
 TAKEN = frozenset(FUNCTION_KEYS.values()) | {
     "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
     "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
-    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "refused",
+    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "refused", "no_offsets",
 }  # fmt: skip
 """Names that a generated method uses for itself."""
 ARRAY_NAMES = {"abs": "absolute"}

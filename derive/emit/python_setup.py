@@ -51,13 +51,14 @@ def tested_limits(kin: Kinematics) -> list[str]:
     bounds = [(name, -1) for name in constants(kin) if name.startswith("lowest_")]
     bounds += [(name, 1) for name in constants(kin) if name.startswith("highest_")]
     values = ", ".join(f"{name}={literal(side * float(UNLIMITED))}" for name, side in bounds)
+    functions = "self._all_checked, self._all_trusted, self._one_trusted"
     if not bounds:
-        return ["self._unrolled = unrolled(self._constants)"]
+        return [f"{functions} = unrolled(self._constants)"]
     return [
         "tested = self._constants",
         "if not self.checks_limits:",
         *fold(f"tested = tested._replace({values})", 4),
-        "self._unrolled = unrolled(tested)",
+        f"{functions} = unrolled(tested)",
     ]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -47,6 +47,8 @@ from derive.unroll import (
     without_words,
 )
 
+NO_OFFSETS = "no_offsets"
+"""Whether all axes have their zero where the joints have it: then nothing is added to them."""
 _ARRAY = ArrayPrinter()
 _SCALAR, _DIRECTIONS = ScalarPrinter(), ScalarPrinter(modulo_turns=True, is_trusted=True)
 _FRAME = Argument("frame", "PlainFrame", (POSITION, ROTATION))
@@ -136,10 +138,13 @@ def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers."""
     methods, parts = _with_constant_parts(kin, _methods(kin))
     known = (*kin.setup.lets(), *parts)
-    functions = (_slots(kin, methods[0], known), _directions(kin, methods[1], known), _direction(methods[2], known))
+    functions = (_slots(kin, methods[0], known), _directions(kin, methods[1], known), _direction(kin, methods[2], known))
     read = {c for m in methods for c in constants_of(m)} | {s.name for p in parts for s in symbols_of(p.value)}
     constants = sorted(read - {p.name.name for p in parts})
     lines = [line for part in parts for line in let_lines(part, _SCALAR)]
+    if any(NO_OFFSETS in line for line in functions[2].body):
+        offsets = [c for c in constants if c in {j.offset.name for j in kin.mechanism.joints}]
+        lines += fold(f"{NO_OFFSETS} = not any(({', '.join(offsets)},))")
     primitives = primitives_in([*lines, *(line for f in functions for line in f.body)])
     return Unrolled(functions, [spelled(c) for c in constants], lines, primitives)
 
@@ -185,11 +190,19 @@ def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functi
     return written.function(_every(kin, written, refusals, _DIRECTIONS, lambda _: "None"))
 
 
-def _direction(method: Method, known: Sequence[Let]) -> Function:
+def _direction(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
     written = _Written.of(method, known)
     lines = item_lines(written.items, Refusals(lambda _: "None"), _DIRECTIONS)
-    values = tuple_of([_DIRECTIONS.print(value) for value in written.values.values()])
-    return written.function([*lines, *fold(f"return {values}")])
+    zero = {joint.offset: sp.Integer(0) for joint in kin.mechanism.joints}
+    zero |= {let.name: value for let in known for value in [let.value.xreplace(zero)] if value.is_number}
+    values, without = list(written.values.values()), [value.xreplace(zero) for value in written.values.values()]
+    if without != values:
+        lines += [f"if {NO_OFFSETS}:", *fold(f"return {_texts(without)}", 4)]
+    return written.function([*lines, *fold(f"return {_texts(values)}")])
+
+
+def _texts(values: Iterable[sp.Expr]) -> str:
+    return tuple_of([_DIRECTIONS.print(value) for value in values])
 
 
 @dataclass(frozen=True)

@@ -20,9 +20,10 @@ IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 Frames = list[tuple[tuple[float, ...], tuple[tuple[float, ...], ...]]]
 
 
-def robot_of(description: Description, limit: float | None = None) -> Mechanism:
+def robot_of(description: Description, limit: float | None = None, offset: float = 0.0) -> Mechanism:
     """A machine of the description's own dimensions; the limits are those of every axis that turns."""
     values: dict[str, float] = {p.name: p.nominal for p in description.parameters}
+    values |= {joint.offset.name: offset * k for k, joint in enumerate(description.joints, 1)}
     if limit is not None:
         for joint in description.joints:
             if joint.is_angle and joint.pitch == 0:
@@ -68,11 +69,12 @@ def test_inverse_all_is_its_branches_one_by_one(description: Description, limit:
     assert answers >= 3
 
 
+@pytest.mark.parametrize("offset", [0.0, 7.0], ids=["no offsets", "offsets"])
 @pytest.mark.parametrize("description", DESCRIPTIONS, ids=lambda d: d.name)
-def test_trusted_input_gives_the_same_directions(description: Description) -> None:
+def test_trusted_input_gives_the_same_directions(description: Description, offset: float) -> None:
     """Axes differ by whole turns at most, and only where no other axis moves with them; the frame is the same."""
-    robot = robot_of(description)
-    frames, references = samples(robot, 8 if description.search is not None else 40)
+    robot = robot_of(description, offset=offset)
+    frames, references = samples(robot, 4 if description.search is not None else 30)
     every = slots((0,) * robot.BRANCHES)
     answers = 0
     for frame, reference in zip(frames, references.tolist(), strict=True):
@@ -135,15 +137,13 @@ def test_rows_in_chunks_are_the_rows_alone(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["Kin_ArticulatedRobot_6DOF", "Kin_Ac6_RZRYRYRXRYRZ_J6Offset"])
-def test_the_functions_of_an_inner_loop(name: str) -> None:
-    """They answer as the methods do, which can be sent to another process."""
+def test_trusted_calls_can_be_sent_to_another_process(name: str) -> None:
     robot = robot_of(next(d for d in DESCRIPTIONS if d.name == name))
     (frame,), _ = samples(robot, 1)
-    plain, signs = (tuple(frame[0]), frame[1]), (1.0,) * robot.BRANCHES
-    loop = robot.inner_loop
-    assert loop.branches(plain) == robot.branches(plain) == pickle.loads(pickle.dumps(robot.branches))(plain)  # type: ignore[arg-type]
-    assert loop.branch(plain, signs, None) == robot.branch(plain, signs)  # type: ignore[arg-type]
-    assert loop.branch(plain, signs) == loop.branch(plain, signs, (0.0,) * 6)  # type: ignore[arg-type]
+    plain, signs, zeros = (tuple(frame[0]), frame[1]), (1.0,) * robot.BRANCHES, (0.0,) * 6
+    branches, branch = (pickle.loads(pickle.dumps(call)) for call in (robot.branches, robot.branch))
+    assert branches(plain) == robot.branches(plain, zeros) == robot.branches(plain)  # type: ignore[arg-type]
+    assert branch(plain, signs) == robot.branch(plain, signs, zeros) == robot.branch(plain, signs, None)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("name", ["Kin_Ac6_ThreeParallel", "Kin_ArticulatedRobot_6DOF"])

@@ -82,18 +82,12 @@ class Branch(Protocol):
     def __call__(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None: ...
 
 
-class InnerLoop(NamedTuple):
-    """The calls of one machine for inner loops as plain functions."""
-
-    branches: Branches
-    branch: Branch
-
-
 class Unrolled(NamedTuple):
     """The functions of a machine whose inverse is one straight line for all branches."""
 
     every_branch: EveryBranch
-    inner_loop: InnerLoop
+    branches: Branches
+    branch: Branch
 
 
 class Mechanism(ABC):
@@ -209,14 +203,6 @@ class Mechanism(ABC):
         position, rows = self._pose(frame)
         found = self._every_branch(position, rows, self._near(reference))
         return Solutions(found, slots((AUTOMATIC,) * self.BRANCHES), self._solution)
-
-    @property
-    def inner_loop(self) -> InnerLoop:
-        """`branches` and `branch` by themselves: nothing is looked up in a call, which takes a twentieth off it.
-
-        To be bound to a name in front of the loop. They belong to this process: it is the robot that is sent to others.
-        """
-        return InnerLoop(self.branches, self.branch)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None where it does not reach.

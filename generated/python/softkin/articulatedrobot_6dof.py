@@ -43,7 +43,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, InnerLoop, Mechanism, Pose
+from softkin._core import Image, Mechanism, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.articulatedrobot_6dof import unrolled
@@ -125,7 +125,7 @@ class ArticulatedRobot6DOF(Mechanism):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
 
     NAME = "Kin_ArticulatedRobot_6DOF"
     AXES = (
@@ -312,7 +312,7 @@ class ArticulatedRobot6DOF(Mechanism):
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, lowest_a4=-1e12, lowest_a5=-1e12, lowest_a6=-1e12,
                 highest_a1=1e12, highest_a2=1e12, highest_a3=1e12, highest_a4=1e12, highest_a5=1e12, highest_a6=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
 
     def _setup(
         self, d1: float, a1: float, a2: float, d3: float, a3: float, d4: float, d6: float, offset_a1: float,
@@ -979,21 +979,19 @@ class ArticulatedRobot6DOF(Mechanism):
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
-    @property
-    def inner_loop(self) -> InnerLoop:
-        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
-        return self._unrolled.inner_loop
-
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.inner_loop.branches(frame, reference)
+        solve = self._all_trusted  # looked up faster by itself than in a call
+        return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.inner_loop.branch(frame, signs, reference)
+        solve = self._one_trusted
+        return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
+        solve = self._all_checked
+        return solve(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

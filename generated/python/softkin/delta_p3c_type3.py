@@ -39,7 +39,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, InnerLoop, Pose
+from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
@@ -112,7 +112,7 @@ class DeltaP3CType3(OffsetKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
 
     NAME = "Kin_Delta_P3C_Type3"
     AXES = (
@@ -309,7 +309,7 @@ class DeltaP3CType3(OffsetKinematics):
             tested = tested._replace(
                 lowest_a1=-1e12, lowest_a2=-1e12, lowest_a3=-1e12, highest_a1=1e12, highest_a2=1e12, highest_a3=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
 
     def _setup(
         self, azimuth_1: float, azimuth_2: float, azimuth_3: float, base_radius_1: float, base_radius_2: float,
@@ -1534,21 +1534,19 @@ class DeltaP3CType3(OffsetKinematics):
         branch_knee_3 = (-flange_z*cos_a3 - span_3_x*cos_azimuth_3*sin_a3 - span_3_y*sin_a3*sin_azimuth_3)/outer_arm_3
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 
-    @property
-    def inner_loop(self) -> InnerLoop:
-        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
-        return self._unrolled.inner_loop
-
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.inner_loop.branches(frame, reference)
+        solve = self._all_trusted  # looked up faster by itself than in a call
+        return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.inner_loop.branch(frame, signs, reference)
+        solve = self._one_trusted
+        return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
+        solve = self._all_checked
+        return solve(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -48,7 +48,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, InnerLoop, Pose
+from softkin._core import Image, Pose
 from softkin._scalar import DEGREE, cos, root, sin, solve, sqrt
 from softkin._start import IterativeForward
 from softkin._types import Axis, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
@@ -204,7 +204,7 @@ class Hexapod(IterativeForward):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
 
     NAME = "Kin_Hexapod"
     AXES = (
@@ -626,7 +626,7 @@ class Hexapod(IterativeForward):
                 lowest_l1=-1e12, lowest_l2=-1e12, lowest_l3=-1e12, lowest_l4=-1e12, lowest_l5=-1e12, lowest_l6=-1e12,
                 highest_l1=1e12, highest_l2=1e12, highest_l3=1e12, highest_l4=1e12, highest_l5=1e12, highest_l6=1e12,
             )
-        self._unrolled = unrolled(tested)
+        self._all_checked, self._all_trusted, self._one_trusted = unrolled(tested)
 
     def _setup(
         self, base_1_x: float, base_1_y: float, base_1_z: float, base_2_x: float, base_2_y: float,
@@ -1955,21 +1955,19 @@ class Hexapod(IterativeForward):
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
-    @property
-    def inner_loop(self) -> InnerLoop:
-        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
-        return self._unrolled.inner_loop
-
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.inner_loop.branches(frame, reference)
+        solve = self._all_trusted  # looked up faster by itself than in a call
+        return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.inner_loop.branch(frame, signs, reference)
+        solve = self._one_trusted
+        return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
+        solve = self._all_checked
+        return solve(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -27,7 +27,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from softkin._core import Image, InnerLoop, Pose
+from softkin._core import Image, Pose
 from softkin._orientation import OrientationKinematics, TotalImage
 from softkin._scalar import sqrt
 from softkin._types import Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
@@ -55,7 +55,7 @@ class Tool(OrientationKinematics):
     Axis values in degrees and the user's length unit (u). See the module for axes, configuration and singularities.
     """
 
-    __slots__ = ("_constants", "_unrolled")
+    __slots__ = ("_all_checked", "_all_trusted", "_constants", "_one_trusted")
 
     NAME = "Kin_Tool"
     AXES = ()
@@ -100,7 +100,7 @@ class Tool(OrientationKinematics):
         """
         values = self._accept(tool_x, tool_y, tool_z, check_limits)
         self._constants = self._setup(*values)
-        self._unrolled = unrolled(self._constants)
+        self._all_checked, self._all_trusted, self._one_trusted = unrolled(self._constants)
 
     def _setup(self, tool_x: float, tool_y: float, tool_z: float, check_limits: float) -> Constants:
         """The constants of the machine."""
@@ -220,21 +220,19 @@ class Tool(OrientationKinematics):
             0.0,
         )
 
-    @property
-    def inner_loop(self) -> InnerLoop:
-        """`branches` and `branch` as plain functions: see `Mechanism.inner_loop`."""
-        return self._unrolled.inner_loop
-
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
-        return self._unrolled.inner_loop.branches(frame, reference)
+        solve = self._all_trusted  # looked up faster by itself than in a call
+        return solve(frame, reference)
 
     def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
-        return self._unrolled.inner_loop.branch(frame, signs, reference)
+        solve = self._one_trusted
+        return solve(frame, signs, reference)
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
-        return self._unrolled.every_branch(position, rotation, reference)
+        solve = self._all_checked
+        return solve(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, root, sin, sqrt
 
 if TYPE_CHECKING:
@@ -63,6 +63,7 @@ def unrolled(k: Constants) -> Unrolled:
     a2_minus_a3 = a2 - a3
     scale_q3_squared = scale_q3*scale_q3
     offset_a5_times_2 = 2.0*offset_a5
+    no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -1749,9 +1750,14 @@ def unrolled(k: Constants) -> Unrolled:
         angle_q3 = arctan2(sin_q3, cos_q3)
         # q4: what the sum q234 leaves
         axis_a4 = offset_a4 + (arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6) - angle_q2 - angle_q3)*RADIAN
+        if no_offsets:
+            return (
+                arctan2(sin_q1, cos_q1)*RADIAN, angle_q2*RADIAN, angle_q3*RADIAN, axis_a4,
+                arctan2(q6_radius_of_q5, cos_q5)*RADIAN, arctan2(sin_q6, cos_q6)*RADIAN,
+            )
         return (
             offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN, offset_a2 + angle_q2*RADIAN, offset_a3 + angle_q3*RADIAN,
             axis_a4, offset_a5 + arctan2(q6_radius_of_q5, cos_q5)*RADIAN, offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

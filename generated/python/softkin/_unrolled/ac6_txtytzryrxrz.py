@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a4 = k.single_a4
     single_a5 = k.single_a5
     single_a6 = k.single_a6
+    no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -229,6 +230,11 @@ def unrolled(k: Constants) -> Unrolled:
             direction_y_a4 = sin(free_a4)
             scaled_r11_from_a4 = direction_x_a4*r11 - direction_y_a4*r31
             direction_y_a6 = direction_y_a4*r32 - direction_x_a4*r12
+        if no_offsets:
+            return (
+                wrist_x, wrist_y, wrist_z, arctan2(direction_y_a4, direction_x_a4)*RADIAN,
+                arctan2(-r23, radius_a4*sigma_wrist)*RADIAN, arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN,
+            )
         return (
             offset_a1 + wrist_x, offset_a2 + wrist_y, offset_a3 + wrist_z,
             offset_a4 + arctan2(direction_y_a4, direction_x_a4)*RADIAN,
@@ -236,4 +242,4 @@ def unrolled(k: Constants) -> Unrolled:
             offset_a6 + arctan2(direction_y_a6, scaled_r11_from_a4)*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

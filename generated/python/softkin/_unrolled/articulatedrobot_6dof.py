@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -64,6 +64,7 @@ def unrolled(k: Constants) -> Unrolled:
     angle_of_a3_by_effective_q3 = arctan2(d4/effective_q3 + 0.0, a3/effective_q3 + 0.0)
     offset_a6_plus_180 = 180.0 + offset_a6
     offset_a5_times_2 = 2.0*offset_a5
+    no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -1039,6 +1040,12 @@ def unrolled(k: Constants) -> Unrolled:
             r12_from_q123 = r32*cos_q23 - (r12*cos_q1 + r22*sin_q1)*sin_q23
             minus_scaled_r22_from_q1234 = (r22*cos_q1 - r12*sin_q1)*direction_x_q4 + direction_y_q4*r12_from_q123
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
+        if no_offsets:
+            return (
+                arctan2(sin_q1, cos_q1)*RADIAN, angle_q2*RADIAN, angle_q3*RADIAN,
+                arctan2(direction_y_q4, direction_x_q4)*RADIAN, arctan2(radius_q4*sigma_hand, cos_q5)*RADIAN,
+                180.0 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN,
+            )
         return (
             offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN, offset_a2 + angle_q2*RADIAN, offset_a3 + angle_q3*RADIAN,
             offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN,
@@ -1046,4 +1053,4 @@ def unrolled(k: Constants) -> Unrolled:
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ def unrolled(k: Constants) -> Unrolled:
     mid_c = k.mid_c
     offset_c = k.offset_c
     single_c = k.single_c
+    no_offsets = not any((offset_c,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -81,6 +82,8 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return None
+        if no_offsets:
+            return (arctan2(heading_across, heading_along)*RADIAN,)
         return (offset_c + arctan2(heading_across, heading_along)*RADIAN,)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_theta = k.offset_theta
     single_theta = k.single_theta
     machine_scale_times_free_angle = 1e-11*machine_scale
+    no_offsets = not any((offset_phi, offset_r, offset_theta,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -127,9 +128,14 @@ def unrolled(k: Constants) -> Unrolled:
             free_phi = (ref_phi - offset_phi)*DEGREE
             direction_x_phi = cos(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
             direction_y_phi = sin(nearest_on_arc(free_phi, 90.0*DEGREE, 90.0*DEGREE))
+        if no_offsets:
+            return (
+                radius_phi, arctan2(direction_y_theta, direction_x_theta)*RADIAN,
+                arctan2(direction_y_phi, direction_x_phi)*RADIAN,
+            )
         return (
             offset_r + radius_phi, offset_theta + arctan2(direction_y_theta, direction_x_theta)*RADIAN,
             offset_phi + arctan2(direction_y_phi, direction_x_phi)*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -78,6 +78,7 @@ def unrolled(k: Constants) -> Unrolled:
     inner_arm_1_squared_minus_outer_arm_1_squared = inner_arm_1*inner_arm_1 - outer_arm_1*outer_arm_1
     inner_arm_2_squared_minus_outer_arm_2_squared = inner_arm_2*inner_arm_2 - outer_arm_2*outer_arm_2
     inner_arm_3_squared_minus_outer_arm_3_squared = inner_arm_3*inner_arm_3 - outer_arm_3*outer_arm_3
+    no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -783,9 +784,11 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
+        if no_offsets:
+            return (arctan2(sin_a1, cos_a1)*RADIAN, arctan2(sin_a2, cos_a2)*RADIAN, arctan2(sin_a3, cos_a3)*RADIAN)
         return (
             offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN,
             offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 
 if TYPE_CHECKING:
     from softkin._types import PlainFrame, Reals, Rotation, Vector
@@ -22,6 +22,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_x = k.offset_x
     offset_y = k.offset_y
     machine_scale_times_plane = 1e-6*machine_scale
+    no_offsets = not any((offset_x, offset_y,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -60,6 +61,8 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
+        if no_offsets:
+            return (x, y)
         return (offset_x + x, offset_y + y)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

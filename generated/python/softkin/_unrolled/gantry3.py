@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 
 if TYPE_CHECKING:
     from softkin._types import PlainFrame, Reals, Rotation, Vector
@@ -23,6 +23,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_x = k.offset_x
     offset_y = k.offset_y
     offset_z = k.offset_z
+    no_offsets = not any((offset_x, offset_y, offset_z,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -56,6 +57,8 @@ def unrolled(k: Constants) -> Unrolled:
     def branch(frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
+        if no_offsets:
+            return (x, y, z)
         return (offset_x + x, offset_y + y, offset_z + z)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

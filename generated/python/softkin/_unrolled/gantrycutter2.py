@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_y = k.offset_y
     single_r = k.single_r
     machine_scale_times_plane = 1e-6*machine_scale
+    no_offsets = not any((offset_r, offset_x, offset_y,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -109,6 +110,8 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return None
+        if no_offsets:
+            return (x, y, arctan2(direction_r*heading_across, heading_along)*RADIAN)
         return (offset_x + x, offset_y + y, offset_r + arctan2(direction_r*heading_across, heading_along)*RADIAN)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_y = k.offset_y
     offset_z = k.offset_z
     single_r = k.single_r
+    no_offsets = not any((offset_r, offset_x, offset_y, offset_z,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -108,9 +109,11 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return None
+        if no_offsets:
+            return (x, y, z, arctan2(direction_r*heading_across, heading_along)*RADIAN)
         return (
             offset_x + x, offset_y + y, offset_z + z,
             offset_r + arctan2(direction_r*heading_across, heading_along)*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

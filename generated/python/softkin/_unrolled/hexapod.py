@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import solve, sqrt
 
 if TYPE_CHECKING:
@@ -112,6 +112,7 @@ def unrolled(k: Constants) -> Unrolled:
     platform_6_z = k.platform_6_z
     platform_radius = k.platform_radius
     machine_scale_times_shortest_link = 1e-9*machine_scale
+    no_offsets = not any((offset_l1, offset_l2, offset_l3, offset_l4, offset_l5, offset_l6,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -865,6 +866,8 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_dependent: the other assembly mode, or too near to losing the plate
         if not (assembly_sign*determinant >= min_type2_margin):
             return None
+        if no_offsets:
+            return (l1, l2, l3, l4, l5, l6)
         return (l1 + offset_l1, l2 + offset_l2, l3 + offset_l3, l4 + offset_l4, l5 + offset_l5, l6 + offset_l6)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

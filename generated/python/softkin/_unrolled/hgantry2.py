@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 
 if TYPE_CHECKING:
     from softkin._types import PlainFrame, Reals, Rotation, Vector
@@ -26,6 +26,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a = k.offset_a
     offset_b = k.offset_b
     machine_scale_times_plane = 1e-6*machine_scale
+    no_offsets = not any((offset_a, offset_b,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -77,6 +78,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane):
             return None
         a = x - y  # a, b: affine in the x and y equations
+        if no_offsets:
+            return (a, -(x + y))
         return (a + offset_a, offset_b - (x + y))
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

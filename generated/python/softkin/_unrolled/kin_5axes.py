@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ def unrolled(k: Constants) -> Unrolled:
     tool_side = k.tool_side
     tool_length_times_tool_side = tool_length*tool_side
     offset_b_times_2 = 2.0*offset_b
+    no_offsets = not any((offset_a, offset_b, offset_x, offset_y, offset_z,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -191,6 +192,11 @@ def unrolled(k: Constants) -> Unrolled:
             free_a = (ref_a - offset_a)*DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
+        if no_offsets:
+            return (
+                wrist_x, y - r23*tool_length_times_tool_side, z - r33*tool_length_times_tool_side,
+                arctan2(direction_y_a, direction_x_a)*RADIAN, arctan2(radius_a*sigma_roll, r33)*RADIAN,
+            )
         return (
             offset_x + wrist_x,
             offset_y + (y - r23*tool_length_times_tool_side),
@@ -199,4 +205,4 @@ def unrolled(k: Constants) -> Unrolled:
             offset_b + arctan2(radius_a*sigma_roll, r33)*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

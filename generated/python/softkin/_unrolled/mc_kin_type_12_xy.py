@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, root, sqrt
 
 if TYPE_CHECKING:
@@ -82,6 +82,7 @@ def unrolled(k: Constants) -> Unrolled:
         + link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
         - link_length_4*link_length_4
     )
+    no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -979,6 +980,8 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
+        if no_offsets:
+            return (arctan2(sin_a1, cos_a1)*RADIAN, arctan2(sin_a2, cos_a2)*RADIAN)
         return (offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

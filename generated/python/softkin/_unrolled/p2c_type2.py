@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ def unrolled(k: Constants) -> Unrolled:
     inner_arm_minus_outer_arm = inner_arm - outer_arm
     inner_arm_squared_minus_outer_arm_squared = inner_arm*inner_arm - outer_arm*outer_arm
     assembly_sign_by_outer_arm_squared = assembly_sign/(outer_arm*outer_arm)
+    no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -356,6 +357,8 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
+        if no_offsets:
+            return (arctan2(sin_a1, cos_a1)*RADIAN, arctan2(sin_a2, cos_a2)*RADIAN)
         return (offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

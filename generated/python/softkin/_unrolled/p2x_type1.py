@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import sqrt
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ def unrolled(k: Constants) -> Unrolled:
     arm_length_1_squared_times_rounding = 1e-12*arm_length_1*arm_length_1
     arm_length_2_squared_times_rounding = 1e-12*arm_length_2*arm_length_2
     assembly_sign_by_arm_length_1_by_arm_length_2 = assembly_sign/(arm_length_1*arm_length_2)
+    no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -210,6 +211,8 @@ def unrolled(k: Constants) -> Unrolled:
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None
+        if no_offsets:
+            return (a1, a2)
         return (a1 + offset_a1, a2 + offset_a2)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import sqrt
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_plane = 1e-6*machine_scale
     share_of_arm_length_squared = 2.5e-13*arm_length*arm_length
     assembly_sign_by_arm_length = assembly_sign/arm_length
+    no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -97,6 +98,8 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         a2 = span_1_x + x + (sqrt(root_square_a2) if root_square_a2 > 0.0 else 0.0)
         a1 = 2.0*x - a2  # a1: affine in the x equation
+        if no_offsets:
+            return (a1, a2)
         return (a1 + offset_a1, a2 + offset_a2)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ def unrolled(k: Constants) -> Unrolled:
     scale_a2_from_a1_squared = scale_a2_from_a1*scale_a2_from_a1
     link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
+    no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -187,6 +188,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1 = (ref_a1 - offset_a1)*DEGREE
         # a2: what the sum a2_from_a1 leaves
         axis_a2 = offset_a2 + (angle_a1 + arctan2(sin_a2_from_a1, cos_a2_from_a1))*RADIAN
+        if no_offsets:
+            return (angle_a1*RADIAN, axis_a2)
         return (offset_a1 + angle_a1*RADIAN, axis_a2)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

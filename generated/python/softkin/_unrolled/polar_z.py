@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_z = k.offset_z
     single_c = k.single_c
     machine_scale_times_free_angle = 1e-11*machine_scale
+    no_offsets = not any((offset_c, offset_r, offset_z,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -94,6 +95,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_c = (ref_c - offset_c)*DEGREE
             direction_x_c = cos(free_c)
             direction_y_c = sin(free_c)
+        if no_offsets:
+            return (arctan2(direction_y_c, direction_x_c)*RADIAN, radius_c, z)
         return (offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN, offset_r + radius_c, offset_z + z)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ def unrolled(k: Constants) -> Unrolled:
     swing_scale_q3_2_squared = swing_scale_q3_2*swing_scale_q3_2
     a2_squared_plus_effective_q3_2_squared = a2*a2 + effective_q3_2*effective_q3_2
     angle_of_a3_by_effective_q3_2 = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
+    no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -379,9 +380,14 @@ def unrolled(k: Constants) -> Unrolled:
             )
         else:
             angle_q2 = (ref_a2 - offset_a2)*DEGREE
+        if no_offsets:
+            return (
+                arctan2(sin_q1, cos_q1)*RADIAN, angle_q2*RADIAN,
+                (angle_of_a3_by_effective_q3_2 - arctan2(minus_sin_swing_q3, cos_swing_q3))*RADIAN,
+            )
         return (
             offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN, offset_a2 + angle_q2*RADIAN,
             offset_a3 + (angle_of_a3_by_effective_q3_2 - arctan2(minus_sin_swing_q3, cos_swing_q3))*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

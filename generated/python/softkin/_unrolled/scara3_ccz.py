@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
     offset_a2_times_2 = 2.0*offset_a2
+    no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -168,6 +169,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:
             angle_a1 = (ref_a1 - offset_a1)*DEGREE
+        if no_offsets:
+            return (angle_a1*RADIAN, arctan2(sin_a2, cos_a2)*RADIAN, z)
         return (offset_a1 + angle_a1*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN, offset_a3 + z)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def unrolled(k: Constants) -> Unrolled:
     scale_a2_squared = scale_a2*scale_a2
     arm_length_1_squared_plus_arm_length_2_squared = arm_length_1*arm_length_1 + arm_length_2*arm_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
+    no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_z,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -237,6 +238,8 @@ def unrolled(k: Constants) -> Unrolled:
         angle_a2 = arctan2(sin_a2, cos_a2)
         # a3: what the sum a123 leaves
         axis_a3 = offset_a3 + (arctan2(sin_heading, cos_heading) - angle_a1 - angle_a2)*RADIAN
+        if no_offsets:
+            return (angle_a1*RADIAN, angle_a2*RADIAN, axis_a3, z)
         return (offset_a1 + angle_a1*RADIAN, offset_a2 + angle_a2*RADIAN, axis_a3, offset_z + z)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def unrolled(k: Constants) -> Unrolled:
     scale_a3_squared = scale_a3*scale_a3
     link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
+    no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -237,6 +238,8 @@ def unrolled(k: Constants) -> Unrolled:
         angle_a3 = arctan2(sin_a3, cos_a3)
         # a4: what the sum a234 leaves
         axis_a4 = offset_a4 + (arctan2(sin_heading, cos_heading) - angle_a2 - angle_a3)*RADIAN
+        if no_offsets:
+            return (z, angle_a2*RADIAN, angle_a3*RADIAN, axis_a4)
         return (offset_a1 + z, offset_a2 + angle_a2*RADIAN, offset_a3 + angle_a3*RADIAN, axis_a4)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
@@ -44,6 +44,7 @@ def unrolled(k: Constants) -> Unrolled:
     link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
     machine_scale_times_free_angle = 1e-11*machine_scale
     pitch_zc_by_360 = pitch_zc/360.0
+    no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -241,6 +242,8 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4 = nearest_period(axis_a4, open_a4)
         a4 = DEGREE*(axis_a4 - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc_by_360*RADIAN  # a3: affine in the z equation
+        if no_offsets:
+            return (angle_a1*RADIAN, angle_a2*RADIAN, a3, axis_a4)
         return (offset_a1 + angle_a1*RADIAN, offset_a2 + angle_a2*RADIAN, a3 + offset_a3, axis_a4)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 
 if TYPE_CHECKING:
     from softkin._types import PlainFrame, Reals, Rotation, Vector
@@ -27,6 +27,7 @@ def unrolled(k: Constants) -> Unrolled:
     offset_a = k.offset_a
     offset_b = k.offset_b
     offset_z = k.offset_z
+    no_offsets = not any((offset_a, offset_b, offset_z,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -73,6 +74,8 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         a = x - y  # a, b: affine in the x and y equations
+        if no_offsets:
+            return (a, x + y, z)
         return (a + offset_a, offset_b + (x + y), offset_z + z)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import root, sqrt
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ def unrolled(k: Constants) -> Unrolled:
     sin_rail_angle_by_2 = 0.5*sin_rail_angle
     root_of_3_times_sin_rail_angle_by_2 = 0.5*root(3.0)*sin_rail_angle
     assembly_sign_by_constant_part = assembly_sign/(arm_length*arm_length*arm_length)
+    no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -608,6 +609,8 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(one_by_2_by_arm_length*y - root_of_3_by_2_by_arm_length*x) <= sin_max_angle_ball_joint):
             return None
+        if no_offsets:
+            return (-minus_a1, a2, a3)
         return (offset_a1 - minus_a1, a2 + offset_a2, a3 + offset_a3)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

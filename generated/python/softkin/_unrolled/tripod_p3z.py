@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import sqrt
 
 if TYPE_CHECKING:
@@ -49,6 +49,7 @@ def unrolled(k: Constants) -> Unrolled:
     constant_part_5 = rail_x_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_x_3
     constant_part_6 = rail_y_3*tcp_displacement/sqrt(rail_x_3*rail_x_3 + rail_y_3*rail_y_3) - rail_y_3
     assembly_sign_by_constant_part = assembly_sign/(arm_length*arm_length*arm_length)
+    no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -513,6 +514,8 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         if not (type2_rods_coplanar >= min_type2_margin):
             return None
+        if no_offsets:
+            return (a1, a2, a3)
         return (a1 + offset_a1, a2 + offset_a2, a3 + offset_a3)
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, root, sqrt
 
 if TYPE_CHECKING:
@@ -60,6 +60,7 @@ def unrolled(k: Constants) -> Unrolled:
     root_of_3_times_arm_length_1_by_2 = 0.5*root(3.0)*arm_length_1
     assembly_sign_by_constant_part = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
     arm_length_1_squared_minus_arm_length_2_squared = arm_length_1*arm_length_1 - arm_length_2*arm_length_2
+    no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -960,9 +961,11 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return None
+        if no_offsets:
+            return (arctan2(sin_a1, cos_a1)*RADIAN, arctan2(sin_a2, cos_a2)*RADIAN, arctan2(sin_a3, cos_a3)*RADIAN)
         return (
             offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN, offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN,
             offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_b = k.single_b
     tool_side = k.tool_side
     offset_b_times_2 = 2.0*offset_b
+    no_offsets = not any((offset_a, offset_b,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -152,9 +153,11 @@ def unrolled(k: Constants) -> Unrolled:
             free_a = (ref_a - offset_a)*DEGREE
             direction_x_a = cos(free_a)
             direction_y_a = sin(free_a)
+        if no_offsets:
+            return (arctan2(direction_y_a, direction_x_a)*RADIAN, arctan2(radius_a*sigma_roll, r33)*RADIAN)
         return (
             offset_a + arctan2(direction_y_a, direction_x_a)*RADIAN,
             offset_b + arctan2(radius_a*sigma_roll, r33)*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)

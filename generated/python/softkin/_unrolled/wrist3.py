@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from softkin._core import InnerLoop, Unrolled
+from softkin._core import Unrolled
 from softkin._scalar import DEGREE, RADIAN, arctan2, cos, nearest_period, sin, sqrt
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_b = k.single_b
     single_c = k.single_c
     offset_b_times_2 = 2.0*offset_b
+    no_offsets = not any((offset_a, offset_b, offset_c,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -175,9 +176,11 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a = (
             offset_a + arctan2(-direction_x_c*r12 - direction_y_c*r11, direction_x_c*r22 + direction_y_c*r21)*RADIAN
         )
+        if no_offsets:
+            return (axis_a, arctan2(radius_c*sigma_hand, r33)*RADIAN, arctan2(direction_y_c, direction_x_c)*RADIAN)
         return (
             axis_a, offset_b + arctan2(radius_c*sigma_hand, r33)*RADIAN,
             offset_c + arctan2(direction_y_c, direction_x_c)*RADIAN,
         )
 
-    return Unrolled(every_branch, InnerLoop(branches, branch))
+    return Unrolled(every_branch, branches, branch)
