@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 
 import sympy as sp
 
@@ -48,6 +49,7 @@ def with_inputs(program: Program) -> Program:
     return verify(replace(program, inputs=inputs))
 
 
+@cache
 def _bare_expression(value: sp.Basic) -> sp.Expr:
     """Symbols without assumptions of their own: in a program a name is a name. Pi is 180 degrees, a square root a root."""
     named = value.xreplace({s: real(s.name) for s in value.free_symbols if s != DEGREE})

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cache
 from math import isqrt
 
 import sympy as sp
@@ -284,7 +285,13 @@ def real(name: str) -> sp.Symbol:
 
 def symbols_of(expression: sp.Basic) -> set[sp.Symbol]:
     """The free symbols of an expression, without the named constant."""
-    return {s for s in expression.free_symbols if isinstance(s, sp.Symbol)} - {DEGREE}
+    return set(_symbols_of(expression))
+
+
+@cache
+def _symbols_of(expression: sp.Basic) -> frozenset[sp.Symbol]:
+    """The same, asked again and again of the same expressions."""
+    return frozenset(s for s in expression.free_symbols if isinstance(s, sp.Symbol)) - {DEGREE}
 
 
 def binds(statement: Statement) -> tuple[sp.Symbol, ...]:

@@ -90,9 +90,8 @@ def every_branch(kin: Kinematics) -> Program:
     return common_parts(program, signs(kin), _constants(kin))
 
 
-def branches(kin: Kinematics) -> Program:
-    """All branches, each axis in any turn."""
-    one = _trusted(kin)
+def branches(kin: Kinematics, one: Program) -> Program:
+    """All branches, each axis in any turn. one: a single branch for input that is trusted."""
     every = with_twins(unroll(one, signs(kin)))
     counted = [name for name in every.bound() if real(without_words(name.name, signs(kin))[0]) in counted_turns(one)]
     return common_parts(any_turn(every, counted), signs(kin), _constants(kin))
@@ -166,7 +165,7 @@ def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
             (position, rotation, reference), "tuple[Reals | float, ...]", (),
         ),
         Method(
-            "branches", "Every slot, the axes in some turn, of input that is trusted.", branches(kin),
+            "branches", "Every slot, the axes in some turn, of input that is trusted.", branches(kin, one),
             (_FRAME, optional), "tuple[Reals | None, ...]", (),
         ),
         Method(

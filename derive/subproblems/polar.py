@@ -34,6 +34,8 @@ def polar(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding
 
 def _radius(problem: Problem, equation: Equation, function: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
     """f and a, where the equation reads f * function = a with a known and f a product of unknowns."""
+    if function not in equation.expression.free_symbols:
+        return None
     linear = linear_coefficients(equation.expression, (function,))
     if linear is None or problem.unknowns_of(linear[1]):
         return None
