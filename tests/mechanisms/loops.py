@@ -48,6 +48,8 @@ class LoopClosure(Closure):
         wanted = (self.positive(joints) > 0).all(axis=1)
         for direction in (*DIRECTIONS, *-DIRECTIONS):
             rows = np.flatnonzero(np.isnan(found[:, 0]) & wanted)
+            if not rows.size:
+                break
             positions, closed = self.assembly_from(joints[rows], direction)
             mine = closed & (self.side(joints[rows], positions) > 0)
             found[rows[mine]] = positions[mine]
@@ -59,6 +61,8 @@ class LoopClosure(Closure):
         positions[:, self.task] = FAR * self.reach * direction[self.task]
         moving = np.arange(len(joints))
         for _ in range(PASSES):
+            if not moving.size:
+                break
             here, there = joints[moving], positions[moving]
             slopes = self.by_position(here, there) + 1e-15 * np.eye(len(self.task))
             step = np.linalg.solve(slopes, self._stated(here, there)[:, :, None])[:, :, 0]
