@@ -285,12 +285,12 @@ def real(name: str) -> sp.Symbol:
 
 def symbols_of(expression: sp.Basic) -> set[sp.Symbol]:
     """The free symbols of an expression, without the named constant."""
-    return set(_symbols_of(expression))
+    return set(names_in(expression))
 
 
 @cache
-def _symbols_of(expression: sp.Basic) -> frozenset[sp.Symbol]:
-    """The same, asked again and again of the same expressions."""
+def names_in(expression: sp.Basic) -> frozenset[sp.Symbol]:
+    """The same as a set that stays: asked again and again of the same expressions."""
     return frozenset(s for s in expression.free_symbols if isinstance(s, sp.Symbol)) - {DEGREE}
 
 

@@ -20,15 +20,9 @@ from functools import cache
 import sympy as sp
 from sympy.logic.boolalg import Boolean
 
-from derive.program import Let, Select, Statement, expressions, reads, symbols_of
+from derive.program import Let, Select, Statement, expressions, names_in, reads
 
 _BOTH = (sp.true, sp.false)
-
-
-@cache
-def _symbols(expression: sp.Basic) -> frozenset[sp.Symbol]:
-    """The symbols of an expression: asked for again and again."""
-    return frozenset(symbols_of(expression))
 
 
 @cache
@@ -52,7 +46,7 @@ Item = Statement | Arms
 
 def in_arms(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
     """The statements of a program, choices that share a condition gathered with what they alone need."""
-    return _sunk(_in_arms(body, wanted), {s for value in wanted for s in _symbols(value)})
+    return _sunk(_in_arms(body, wanted), {s for value in wanted for s in names_in(value)})
 
 
 def spared(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
@@ -60,7 +54,7 @@ def spared(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...
 
     It serves a language that runs one side alone: a choice then binds its names on the other side only.
     """
-    later = {s for value in wanted for s in _symbols(value)}
+    later = {s for value in wanted for s in names_in(value)}
     found: list[Item] = []
     for place, item in enumerate(items):
         if isinstance(item, Arms):
@@ -75,7 +69,7 @@ def spared(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...
 def _reads_where(item: Item, condition: sp.Basic) -> set[sp.Symbol]:
     """What a statement reads where a condition holds."""
     if isinstance(item, Arms) and (item.condition == condition or _follows(item.condition, condition, sp.true)):
-        return set(_symbols(item.condition)).union(*map(_reads_somewhere, item.holds))
+        return set(names_in(item.condition)).union(*map(_reads_somewhere, item.holds))
     return _reads_somewhere(item)
 
 
@@ -95,8 +89,8 @@ def _sunk(items: Sequence[Item], later: set[sp.Symbol]) -> tuple[Item, ...]:
 def _reads_always(item: Item) -> set[sp.Symbol]:
     """What a statement reads, or a choice to decide and on its first side."""
     if isinstance(item, Arms):
-        return set(_symbols(item.condition)).union(*map(_reads_somewhere, item.holds))
-    return {s for value in expressions(item) for s in _symbols(value)} | set(reads(item))
+        return set(names_in(item.condition)).union(*map(_reads_somewhere, item.holds))
+    return {s for value in expressions(item) for s in names_in(value)} | set(reads(item))
 
 
 def _with(arms: Arms, let: Let) -> Arms:
@@ -113,7 +107,7 @@ def _reads_somewhere(item: Item) -> set[sp.Symbol]:
 
 
 def _in_arms(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ...]:
-    later = frozenset(s for value in wanted for s in _symbols(value))
+    later = frozenset(s for value in wanted for s in names_in(value))
     found: list[Item] = []
     stretch: list[Let] = []
     for statement in reversed(body):
@@ -121,7 +115,7 @@ def _in_arms(body: Sequence[Item], wanted: Sequence[sp.Basic]) -> tuple[Item, ..
             stretch.insert(0, statement)
             continue
         found[:0] = [statement, *_gathered(stretch, later)]
-        later = later.union(*(_symbols(let.value) for let in stretch), _reads_somewhere(statement))
+        later = later.union(*(names_in(let.value) for let in stretch), _reads_somewhere(statement))
         stretch = []
     return (*_gathered(stretch, later), *found)
 
@@ -143,7 +137,7 @@ class _Stretch:
     def __init__(self, lets: Sequence[Let], later: frozenset[sp.Symbol]) -> None:
         self.lets, self.later = tuple(lets), later
         self.place = {let.name: place for place, let in enumerate(lets)}
-        self.sources = [sorted(self.place[s] for s in _symbols(let.value) if s in self.place) for let in lets]
+        self.sources = [sorted(self.place[s] for s in names_in(let.value) if s in self.place) for let in lets]
         self.readers: list[list[int]] = [[] for _ in lets]
         self.deciding: dict[sp.Basic, list[int]] = {}
         for place, let in enumerate(lets):
@@ -224,12 +218,12 @@ class _Choice:
         return any(not isinstance(v, Select) or v.args[0] != value.args[0] for v in sides)
 
     def _reads(self, place: int, side: int) -> frozenset[sp.Symbol]:
-        return _symbols(self.value(place, side))
+        return names_in(self.value(place, side))
 
     def _inside(self, members: set[int]) -> dict[int, int]:
         """The other statements that one side alone reads: 0 where the condition holds, 1 where it does not."""
         stretch, inside = self.stretch, dict[int, int]()
-        outside = stretch.later | _symbols(self.condition)
+        outside = stretch.later | names_in(self.condition)
         for place in sorted(stretch.upstream(members) - members, reverse=True):
             name = stretch.lets[place].name
             if name in outside or any(r not in members and r not in inside for r in stretch.readers[place]):
@@ -257,20 +251,20 @@ class _Choice:
         """The stretch with the choice in it, and what is left gathered in turn."""
         lets, later = self.stretch.lets, self.stretch.later
         gathered = self.gathered
-        needed_outside = {s for place, let in enumerate(lets) if place not in gathered for s in _symbols(let.value)}
+        needed_outside = {s for place, let in enumerate(lets) if place not in gathered for s in names_in(let.value)}
         results = tuple(lets[place].name for place in sorted(self.members) if lets[place].name in later | needed_outside)
         arms = Arms(self.condition, self._arm(0, results), self._arm(1, results), results)
         first = self.stretch.upstream(gathered | self._deciders()) - gathered
         first |= set(range(min(self.members))) - gathered - self.stretch.downstream(gathered)  # what was first stays first
         after = [let for place, let in enumerate(lets) if place not in gathered and place not in first]
-        read_after = later.union(*(_symbols(let.value) for let in after))
-        read_inside = _symbols(self.condition).union(*(_symbols(lets[place].value) for place in gathered))
+        read_after = later.union(*(names_in(let.value) for let in after))
+        read_inside = names_in(self.condition).union(*(names_in(lets[place].value) for place in gathered))
         before = [lets[place] for place in sorted(first)]
         return [*_gathered(before, read_after | read_inside), arms, *_gathered(after, later)]
 
     def _deciders(self) -> set[int]:
         """The statements that the condition reads."""
-        return {self.stretch.place[s] for s in _symbols(self.condition) if s in self.stretch.place}
+        return {self.stretch.place[s] for s in names_in(self.condition) if s in self.stretch.place}
 
     def _arm(self, side: int, results: tuple[sp.Symbol, ...]) -> tuple[Item, ...]:
         lets = [
@@ -316,5 +310,5 @@ def _ancestors(lets: Sequence[Let], wanted: set[sp.Symbol]) -> set[sp.Symbol]:
     needed = set(wanted)
     for let in reversed(lets):
         if let.name in needed:
-            needed |= _symbols(let.value)
+            needed |= names_in(let.value)
     return needed & {let.name for let in lets}

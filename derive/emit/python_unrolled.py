@@ -137,7 +137,7 @@ def unrolled(kin: Kinematics) -> Unrolled:
     """The functions on plain numbers."""
     methods, parts = _with_constant_parts(kin, _methods(kin))
     known = (*kin.setup.lets(), *parts)
-    functions = (_slots(kin, methods[0], known), _directions(kin, methods[1], known), _direction(kin, methods[2], known))
+    functions = (_slots(kin, methods[0], known), _directions(kin, methods[1], known), _direction(kin, methods[2], known, parts))
     read = {c for m in methods for c in constants_of(m)} | {s.name for p in parts for s in symbols_of(p.value)}
     constants = sorted(read - {p.name.name for p in parts})
     lines = [line for part in parts for line in let_lines(part, _SCALAR)]
@@ -189,11 +189,12 @@ def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functi
     return written.function(_every(kin, written, refusals, _DIRECTIONS, lambda _: "None"))
 
 
-def _direction(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
+def _direction(kin: Kinematics, method: Method, known: Sequence[Let], parts: Sequence[Let]) -> Function:
+    """One branch; its return once more without the offsets, read by it or in its parts, where all of them are zero."""
     written = _Written.of(method, known)
     lines = item_lines(written.items, Refusals(lambda _: "None"), _DIRECTIONS)
     zero = {joint.offset: sp.Integer(0) for joint in kin.mechanism.joints}
-    zero |= {let.name: value for let in known for value in [let.value.xreplace(zero)] if value.is_number}
+    zero |= {let.name: value for let in parts for value in [let.value.xreplace(zero)] if value.is_number}
     values, without = list(written.values.values()), [value.xreplace(zero) for value in written.values.values()]
     if without != values:
         lines += [f"if {NO_OFFSETS}:", *fold(f"return {_texts(without)}", 4)]
