@@ -12,7 +12,7 @@ from derive.branching import Assignment, assign, margin_lets, with_branch_signs
 from derive.carried import BASE_AXIS, FLANGE_AXIS, coupling_programs
 from derive.closure import flange_rotation, heading_of
 from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program, twist_program
-from derive.edges import finite, is_rotation, joint_lets
+from derive.edges import finite, joint_lets
 from derive.forward import (
     Forward,
     at_point,
@@ -238,13 +238,13 @@ def _projection_program(mechanism: Mechanism) -> Program:
     """The nearest rotation that the flange can have; of a direction, any twist about it."""
     if mechanism.task.turning in (Turning.DIRECTION, Turning.FULL):
         own = [Output(r.name, r) for r in ROTATION_ENTRIES]
-        return assemble("projection", (*finite(ROTATION_ENTRIES), *is_rotation()), own)
+        return assemble("projection", (), own)
     assert mechanism.chain is not None
     cos_heading, sin_heading = real("cos_heading"), real("sin_heading")
     turned = sp.Matrix([[cos_heading, -sin_heading, 0], [sin_heading, cos_heading, 0], [0, 0, 1]])
     rotation = turned * flange_rotation(mechanism.chain)
     outputs = [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, rotation, strict=True)]
-    return assemble("projection", (*finite(ROTATION_ENTRIES), *is_rotation(), *heading_lets(mechanism)), outputs)
+    return assemble("projection", heading_lets(mechanism), outputs)
 
 
 def _turns_in_a_coupling(mechanism: Mechanism) -> bool:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.closure import flange_rotation
-from derive.edges import finite, is_rotation
+from derive.edges import finite
 from derive.frames import Factor, Motion
 from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, Mechanism, Turning
 from derive.passes import assemble
@@ -94,8 +94,6 @@ def _carried(mechanism: Mechanism) -> Program:
     if any(parts.flange):
         place += sp.Matrix(BASE_AXIS) * _ALONG
         body += [*finite((*FLANGE_AXIS, *BASE_AXIS)), *_along(parts)]
-    if any(tool):
-        body += [*finite(ROTATION_ENTRIES), *is_rotation()]
     return assemble("carried", body, [Output(c, v) for c, v in zip(COORDINATE_NAMES, place, strict=True)])
 
 
@@ -104,7 +102,7 @@ def _total_image(mechanism: Mechanism) -> Program:
     assert mechanism.chain is not None
     own = sp.Matrix(flange_rotation(mechanism.chain))
     outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, _ROTATION * own, strict=True)]
-    read = [*ROTATION_ENTRIES, *FLANGE_AXIS]
+    read = [*FLANGE_AXIS]
     axis = sp.Matrix([0, 0, 1])
     rot, u, apart = sp.Matrix(BASE_AXIS), own.T * sp.Matrix(FLANGE_AXIS), sp.Integer(0)
     if mechanism.task.turning is Turning.NONE:
@@ -113,7 +111,7 @@ def _total_image(mechanism: Mechanism) -> Program:
         rot, u, apart = _ROTATION * axis, own.T * axis, _size(list(axis.cross(sp.Matrix(FLANGE_AXIS))))
     outputs += [Output(f"rot_{c}", v) for c, v in zip(COORDINATE_NAMES, rot, strict=True)]
     outputs += [Output(f"u_{c}", v) for c, v in zip(COORDINATE_NAMES, u, strict=True)]
-    return assemble("total_image", (*finite(read), *is_rotation()), [*outputs, Output("apart", apart)])
+    return assemble("total_image", finite(read), [*outputs, Output("apart", apart)])
 
 
 def _along(parts: Carried) -> tuple[Let, ...]:

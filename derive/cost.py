@@ -11,8 +11,9 @@ from dataclasses import astuple, dataclass
 
 import sympy as sp
 
-from derive.diagnosis import Reasons, reasons_of
+from derive.diagnosis import Reasons, reasons_of, reasons_of_rotation
 from derive.kinematics import Kinematics
+from derive.orthonormal import rotation_program
 from derive.program import Atan2, Call, Iterate, Let, NearestOnArc, NearestPeriod, Program, Require, Root, Solve, Statement
 
 _BINARY_FRACTIONS = (2, 4, 8, 16)
@@ -78,10 +79,11 @@ def costs_of(kinematics: Kinematics) -> Costs:
     branch, limits = (_with_refusals(p, reasons) for p in (kinematics.branch, kinematics.limits))
     # The distance of a solution from the reference, a sum of squares, and its comparison with the least so far
     tried = branch + Cost(additions=3 * axes, multiplications=axes) if kinematics.branches else branch
+    once = _with_refusals(rotation_program(), reasons_of_rotation()) + limits if kinematics.reads_rotation else limits
     return Costs(
         forward=cost_of(kinematics.forward) + _PERIOD_BYTE * periods,
-        inverse=tried + limits,
-        automatic=tried * 2 ** len(kinematics.branches) + limits,
+        inverse=tried + once,
+        automatic=tried * 2 ** len(kinematics.branches) + once,
         bounds=tuple(dict.fromkeys(b for p in (kinematics.forward, kinematics.branch) for b in _bounds(p))),
     )
 

@@ -6,15 +6,17 @@ or there is nothing to measure.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
 
 import sympy as sp
-from sympy.core.relational import GreaterThan, Relational, StrictGreaterThan
+from sympy.core.relational import GreaterThan, LessThan, Relational, StrictGreaterThan
 
 from derive.dimensions import Role
 from derive.kinematics import Kinematics
 from derive.legs import SCALE
+from derive.orthonormal import rotation_program
 from derive.program import DEGREE, Atan2, Call, Iterate, Let, Require, Root, Select, Status
 
 NOT_INITIALIZED = "not initialized"
@@ -58,16 +60,19 @@ class Reasons:
     def checks(self, requires: Iterable[Require]) -> list[Check]:
         """What requirements ask, in a fixed order: one check for every reason that has an amount, one for others alike."""
         found: list[Check] = []
-        for require in requires:
-            for part in sp.ordered(sp.And.make_args(require.condition)):
-                is_input = require.otherwise is Status.BAD_INPUT
-                missing = Missing(_NOTHING) if is_input else self._missing(part)
-                reason = self._reason(f"not given: {require.note}" if is_input else require.note, missing)
-                check = Check((part,), require.otherwise, reason, missing.amount)
-                if missing.amount == 0 and found and found[-1].reason == check.reason:
-                    check = Check((*found.pop().conditions, part), check.status, check.reason, check.missing)
-                found.append(check)
+        for check in (c for require in requires for c in self._checks(require)):
+            if check.missing == 0 and found and found[-1].reason == check.reason:
+                check = replace(check, conditions=(*found.pop().conditions, *check.conditions))
+            found.append(check)
         return found
+
+    def _checks(self, require: Require) -> Iterator[Check]:
+        if require.otherwise is Status.BAD_INPUT:
+            yield _input_check(require)
+            return
+        for part in sp.ordered(sp.And.make_args(require.condition)):
+            missing = self._missing(part)
+            yield Check((part,), require.otherwise, self._reason(require.note, missing), missing.amount)
 
     def loop(self, loop: Iterate) -> str:
         """Why a loop that was never left refuses."""
@@ -129,6 +134,16 @@ class Reasons:
         return {s for s in value.free_symbols - known if s.name not in self.lengths}
 
 
+def reasons_of_rotation() -> Reasons:
+    """What the reasons to refuse a commanded rotation need to know: nothing of the mechanism."""
+    return Reasons({}, {}, frozenset(), {})
+
+
+def rotation_texts() -> tuple[str, ...]:
+    """Every reason to refuse a commanded rotation: the place, from 1, is the number of the reason."""
+    return tuple(check.reason for check in reasons_of_rotation().checks(rotation_program().requires()))
+
+
 def reasons_of(kinematics: Kinematics) -> Reasons:
     """What the reasons of a mechanism need to know."""
     programs = (kinematics.setup, kinematics.branch, kinematics.limits)
@@ -164,6 +179,20 @@ def workspace(kinematics: Kinematics) -> tuple[str, ...]:
     for subject, _, why in (c.reason.partition(" [")[0].rpartition(": ") for s in bounds for c in reasons.checks([s])):
         found.setdefault(why, []).append(subject)
     return tuple(f"{', '.join(dict.fromkeys(who))}: {why}".removeprefix(": ") for why, who in found.items())
+
+
+def _input_check(require: Require) -> Check:
+    """Where the condition bounds errors that have names, the largest of them is told; else it is said what should be given."""
+    parts = tuple(sp.ordered(sp.And.make_args(require.condition)))
+    errors = [p.lhs for p in parts if isinstance(p, LessThan) and p.lhs.is_Symbol]
+    if len(errors) < len(parts):
+        return Check(parts, require.otherwise, f"not given: {require.note}", _NOTHING)
+    return Check(parts, require.otherwise, require.note, _largest(errors))
+
+
+def _largest(values: Sequence[sp.Expr]) -> sp.Expr:
+    first, *others = values
+    return reduce(lambda most, value: Select(sp.Gt(value, most), value, most), others, first)
 
 
 def _told(part: sp.Basic) -> sp.Basic:

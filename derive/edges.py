@@ -7,11 +7,10 @@ from collections.abc import Sequence
 import sympy as sp
 
 from derive.algebra import cosine, sine
-from derive.mechanism import ROTATION_ENTRIES, Joint, Mechanism
+from derive.mechanism import Joint, Mechanism
 from derive.program import (
     DEGREE,
     LARGEST,
-    ROTATION,
     TURN_NOTE,
     Atan2,
     Let,
@@ -28,21 +27,6 @@ def finite(symbols: Sequence[sp.Symbol]) -> tuple[Require, ...]:
     """Every input that is read must be a number of reasonable size."""
     conditions = [sp.Le(sp.Abs(s), LARGEST) for s in symbols]
     return (Require(sp.And(*conditions), Status.BAD_INPUT, "numbers of reasonable size"),) if conditions else ()
-
-
-def is_rotation(entries: Sequence[sp.Symbol] = ROTATION_ENTRIES) -> tuple[Require, ...]:
-    """A commanded rotation must be one: R^T R is the identity, and its determinant is positive."""
-    rotation = sp.Matrix(3, 3, entries)
-    product = rotation.T * rotation
-    orthonormal = [
-        sp.Le(sp.Abs(product[i, j] - (1 if i == j else 0)), ROTATION) for i in range(3) for j in range(i, 3)
-    ]
-    first, second, third = (rotation[:, k] for k in range(3))
-    determinant = sum(first[k] * second.cross(third)[k] for k in range(3))
-    return (
-        Require(sp.And(*orthonormal), Status.BAD_INPUT, "columns of length one, at right angles"),
-        Require(sp.Gt(determinant, 0), Status.BAD_INPUT, "a right-handed frame"),
-    )
 
 
 def joint_lets(mechanism: Mechanism) -> tuple[Let, ...]:

@@ -24,7 +24,6 @@ from derive.edges import (
     finite,
     free,
     frozen_lets,
-    is_rotation,
     plain_angle,
     reference_lets,
 )
@@ -134,11 +133,7 @@ def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
 
 
 def _heading(mechanism: Mechanism) -> tuple[Statement, ...]:
-    if mechanism.task.turning is Turning.NONE:
-        return ()
-    if mechanism.task.turning is Turning.ABOUT_Z:
-        return (*is_rotation(), *heading_lets(mechanism))
-    return is_rotation()
+    return heading_lets(mechanism) if mechanism.task.turning is Turning.ABOUT_Z else ()
 
 
 def inverse_program(
@@ -156,7 +151,7 @@ def inverse_program(
     outputs = [Output(j.axis.name, j.axis) for j in mechanism.joints]
     body = (*inverse.naming, *in_plane, *statements, *last, *axes)
     draft = assemble(name, body, outputs)
-    groups = (POSITION, OFFSET, ROTATION_ENTRIES, tuple(j.reference for j in mechanism.joints))
+    groups = (POSITION, OFFSET, tuple(j.reference for j in mechanism.joints))
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))
     return shorter(assemble(name, (*checks, *draft.body), draft.outputs))
 

@@ -6,7 +6,8 @@ Names that programs share:
     axis_a1, ref_a1                 axis value and its reference (degrees or user's length unit)
     turn_a1                         commanded period number (an integer as a real), 0 = open
     sigma_elbow                     branch sign: +1 is byte 1, -1 is byte 2
-    x, y, z, r11 … r33              frame: position, rotation by rows (columns are the axes of the frame)
+    x, y, z, r11 … r33              frame: position, rotation by rows (columns are the axes of the frame); where a caller gives
+                                    it, `rotation_program` has made it one before: no other program checks it
     point_x, point_y, point_z       the point off the flange (the tool offset), in flange coordinates
 """
 

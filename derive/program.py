@@ -36,8 +36,10 @@ ROUNDING = sp.Float("1e-12")
 """A motion of the pose smaller than this share of the machine is rounding."""
 LARGEST = sp.Integer(10) ** 9
 """Inputs larger in size than this are refused."""
-ROTATION = sp.Float("1e-6")
-"""How far the product of a rotation with its transpose may be from the identity."""
+ROTATION = sp.Float("1e-4")
+"""How far the product of a rotation with its transpose may be from the identity: frames come from single precision, too."""
+EXACT_ROTATION = sp.Float("1e-12")
+"""A rotation nearer to one than this is used as it is; one that is further away is repaired."""
 PLANE = sp.Float("1e-6")
 """How far a planar machine's commanded z may be from its plane, per unit of reach."""
 LIMIT = sp.Float("1e-9")

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from derive.kinematics import Kinematics
 from derive.legs import HOME_ROTATION
 from derive.mechanism import ROTATION_ENTRIES
+from derive.orthonormal import rotation_program
 from derive.program import EDGE, FREE_ANGLE, TIE, Program, Status
 from derive.run import Array, evaluate, run
 from derive.selftest_cases import Bytes, Reals
@@ -83,12 +84,18 @@ def branches(
     choices = [(1, 2) if byte in (0, 3) else (byte,) for byte in configuration[:count]]
     slots = sorted(product(*choices), key=lambda slot: slot[::-1])  # the first branch counts fastest
     values = dict(zip(FRAME, map(np.asarray, frame), strict=True))
+    axes = [j.axis.name for j in kinematics.mechanism.joints]
+    nothing = (0.0,) * len(axes)
+    if kinematics.reads_rotation:
+        made, outcome = run(rotation_program(), {n: values[n] for n in FRAME[3:]})
+        refused = Status(outcome[()])
+        if refused is not Status.OK:
+            return slots, [nothing] * len(slots), [refused] * len(slots)
+        values |= made
     values |= {j.reference.name: np.asarray(r) for j, r in zip(kinematics.mechanism.joints, reference, strict=True)}
     values |= {f"sigma_{b.name}": np.array([3.0 - 2.0 * slot[k] for slot in slots]) for k, b in enumerate(kinematics.branches)}
     values |= {j.turn.name: np.asarray(float(n)) for j, n in zip(kinematics.period_joints, configuration[count:], strict=True)}
     found, status = _run(kinematics.branch, machine, values | {"": np.zeros(len(slots))})
-    axes = [j.axis.name for j in kinematics.mechanism.joints]
-    nothing = (0.0,) * len(axes)
     solved = [_rounded([float(found[n][k]) for n in axes]) if status[k] is Status.OK else nothing for k in range(len(slots))]
     return slots, solved, list(status)
 

@@ -16,9 +16,10 @@ from derive.emit.python_layout import WIDTH, fold
 from derive.emit.python_methods import branch, carried, forwards, limits, methods, shared
 from derive.emit.python_printer import ARRAY_NAMES, array_helpers_in, literal, primitives_in
 from derive.emit.python_program import Method, array_body, functions, has_loop, scalar_body
+from derive.emit.python_rotation import rotation_functions
 from derive.emit.python_unrolled import array_lines, array_method, can_be_unrolled, unrolled
 from derive.kinematics import Kinematics
-from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, SINGULAR, SOLVABLE, TIE, Status
+from derive.program import EDGE, EXACT_ROTATION, FREE_ANGLE, HELD, LARGEST, PIVOT, ROTATION, SINGULAR, SOLVABLE, TIE, Status
 
 name = "python"
 
@@ -27,6 +28,7 @@ _FIXED = (
     "softkin/_array.py",
     "softkin/_array_coupled.py",
     "softkin/_array_programs/__init__.py",
+    "softkin/_array_rotation.py",
     "softkin/_batch.py",
     "softkin/_columns.py",
     "softkin/_configuration.py",
@@ -36,6 +38,7 @@ _FIXED = (
     "softkin/_input.py",
     "softkin/_offset.py",
     "softkin/_orientation.py",
+    "softkin/_rotation.py",
     "softkin/_scalar.py",
     "softkin/_search.py",
     "softkin/_solutions.py",
@@ -93,6 +96,9 @@ def _templates() -> Environment:
         "held": literal(float(HELD)),
         "free_angle": literal(float(FREE_ANGLE)),
         "largest": literal(float(LARGEST)),
+        "rotation": rotation_functions(),
+        "largest_error": literal(float(ROTATION)),
+        "exact": literal(float(EXACT_ROTATION)),
         "pivot": literal(float(PIVOT)),
         "singular": literal(float(SINGULAR)),
         "solvable": literal(float(SOLVABLE)),

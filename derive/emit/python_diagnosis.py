@@ -20,7 +20,7 @@ _PRINTER = ScalarPrinter()
 
 def diagnosis(kin: Kinematics) -> dict[str, object]:
     """What the template reads: the primitives, and the functions with their heads and bodies."""
-    refusals = _Reasons(lambda status: f"Status.{status.name}", reasons_of(kin))
+    refusals = Explained(lambda status: f"Status.{status.name}", reasons_of(kin))
     methods = (branch(kin), limits(kin))
     bodies = [_body(m, refusals) for m in methods]
     return {
@@ -35,7 +35,7 @@ def _head(method: Method) -> list[str]:
     return fold(f"def {method.name}(constants: Constants{arguments}) -> {result}:", 0)
 
 
-def _body(method: Method, refusals: _Reasons) -> list[str]:
+def _body(method: Method, refusals: Explained) -> list[str]:
     """Without the notes: they stand in the module of the mechanism."""
     body = scalar_body(method, "constants", refusals)
     lines = [line.partition("  # ")[0] for line in body if not line.lstrip().startswith("#")]
@@ -43,7 +43,7 @@ def _body(method: Method, refusals: _Reasons) -> list[str]:
 
 
 @dataclass(frozen=True)
-class _Reasons(Refusals):
+class Explained(Refusals):
     """Refusals that say why."""
 
     reasons: Reasons

@@ -16,7 +16,7 @@ IMAGE: tuple[Shape, ...] = (
     ("rot_x", "rot_y", "rot_z"),
     ("u_x", "u_y", "u_z"),
 )
-_ROTATION = Argument("rotation", "Rotation", ROTATION)
+ROTATION_ARGUMENT = Argument("rotation", "Rotation", ROTATION)
 _RANK = Argument("number", "Reals", ("rank",))
 _AXES = tuple(Argument(name, "Vector", tuple(f"{name}_{c}" for c in "xyz")) for name in ("flange_axis", "base_axis"))
 
@@ -43,10 +43,9 @@ def methods(kin: Kinematics) -> list[Method]:
         entries = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i in range(1, 7))
         found.append(Method("twist", text, kin.twist, (axes,), "Matrix", entries))
     found += [*_compatible(kin), *carried(kin), *_total_image(kin)]
-    rotation = _ROTATION
     if kin.projection is not None and kin.chooses_twist:
         text = "The nearest rotation that the flange can have."
-        found.append(Method("projection", text, kin.projection, (rotation,), "Rotation", ROTATION))
+        found.append(Method("projection", text, kin.projection, (ROTATION_ARGUMENT,), "Rotation", ROTATION))
     offset = Argument("offset", "Vector", OFFSET)
     if kin.offset_branch is not None:
         text = "The axes of one branch for a point off the flange."
@@ -110,7 +109,7 @@ def carried(kin: Kinematics) -> list[Method]:
     if kin.carried is None:
         return []
     text = "From a flange that turns to the end point."
-    return [Method("carried", text, kin.carried, (_ROTATION, *_AXES), "Vector", POSITION)]
+    return [Method("carried", text, kin.carried, (ROTATION_ARGUMENT, *_AXES), "Vector", POSITION)]
 
 
 def _compatible(kin: Kinematics) -> list[Method]:
@@ -123,7 +122,7 @@ def _total_image(kin: Kinematics) -> list[Method]:
     if kin.total_image is None:
         return []
     text = "The orientations on a flange, and how far the two axes are apart."
-    return [Method("total_image", text, kin.total_image, (_ROTATION, *_AXES), "TotalImage", (*IMAGE, "apart"))]
+    return [Method("total_image", text, kin.total_image, (ROTATION_ARGUMENT, *_AXES), "TotalImage", (*IMAGE, "apart"))]
 
 
 def limits(kin: Kinematics) -> Method:

@@ -21,12 +21,13 @@ from derive.emit.st_methods import methods_of
 from derive.emit.st_objects import Object, objects_of, ruled
 from derive.emit.st_overview import overview
 from derive.emit.st_reserved import refuse_clashes
+from derive.emit.st_rotation import rotation_function
 from derive.emit.st_selftest import FOLDER as SELF_TESTS
 from derive.emit.st_selftest import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.st_selftest import test_of
 from derive.emit.st_uses import needed
 from derive.kinematics import Kinematics
-from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, ROTATION, SOLVABLE, TIE
+from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, SOLVABLE, TIE
 
 _FOLDER = "st"
 _SHARED = "softkin"
@@ -65,8 +66,9 @@ def _objects(
     kinematics: Sequence[Kinematics], contract: Contract, templates: Environment
 ) -> Iterator[tuple[str, tuple[Object, ...]]]:
     """The objects of every file, by its path without the ending."""
+    rotation = rotation_function(contract)
     for path in sorted((TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2")):
-        text = templates.get_template(f"{_SHARED}/{path.name}").render(contract.spelling)
+        text = templates.get_template(f"{_SHARED}/{path.name}").render(contract.spelling, rotation=rotation)
         yield f"{_SHARED}/{path.name.removesuffix('.st.j2')}", objects_of(text)
     for one in kinematics:
         yield f"{one.mechanism.family}/{one.mechanism.block_name}", objects_of(_unit(one, contract, templates))
@@ -112,7 +114,6 @@ def _templates() -> Environment:
         edge=literal(float(EDGE)),
         largest=literal(float(LARGEST)),
         held=literal(float(HELD)),
-        rotation=literal(float(ROTATION)),
         pivot=literal(float(PIVOT)),
         solvable=literal(float(SOLVABLE)),
         smallest=literal(1.0 / float(SOLVABLE)),

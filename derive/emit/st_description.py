@@ -14,11 +14,18 @@ from derive.emit.st_block import Block
 from derive.emit.st_names import input_name, respelled
 from derive.kinematics import Kinematics
 from derive.mechanism import Kind
+from derive.program import EXACT_ROTATION, ROTATION
 
 _WIDTH = 100
 _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
 _PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 the value nearest to the reference"
 _BRANCH = "0 automatic, 3 where both solutions coincide"
+_READ = (
+    f"A commanded rotation may be one to a few digits only, as from REAL: where its transpose times itself differs from the "
+    f"identity by more than {float(EXACT_ROTATION):g} it is repaired (z, the direction of the tool, is kept), by more than "
+    f"{float(ROTATION):g} refused."
+)
+_NOT_READ = "The commanded rotation is not looked at."
 _COST_HEAD = ("Method", "Additions", "Multiplications", "Divisions", "Square roots", "Sines")
 _KINDS = {
     (True, False): "Position kinematics for a SoftMotion axis group. ",
@@ -98,6 +105,8 @@ def _workspace(kinematics: Kinematics) -> Iterator[str]:
         yield ""
     for bound in bounds:
         yield from _item(f"{bound}.")
+    yield ""
+    yield from wrap(_READ if kinematics.reads_rotation else _NOT_READ, _WIDTH)
 
 
 def _verification(kinematics: Kinematics) -> Iterator[str]:

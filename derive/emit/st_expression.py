@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import sympy as sp
 
 from derive.emit.expression import ExpressionPrinter
-from derive.program import LARGEST
+from derive.program import LARGEST, Select
 
 _FUNCTIONS = {
     "sin": "SIN",
@@ -39,6 +39,11 @@ def is_size_test(condition: sp.Basic) -> bool:
     return bool(condition.lhs.args[0].is_Symbol)
 
 
+def is_larger(expression: sp.Basic) -> bool:
+    """Whether a choice takes the larger of two values."""
+    return isinstance(expression, Select) and expression.args[0] == sp.Gt(*expression.args[1:])
+
+
 class StructuredText(ExpressionPrinter):
     """Spell an expression, given the spelling of every name in it."""
 
@@ -49,6 +54,8 @@ class StructuredText(ExpressionPrinter):
         """The expression as text. The size of an input is tested by comparison: nothing else is safe."""
         if is_size_test(expression):
             return f"Softkin_IsNumber({self.print(expression.lhs.args[0])})"
+        if is_larger(expression):
+            return f"MAX({self.print(expression.args[2])}, {self.print(expression.args[1])})"
         return super().print(expression)
 
     def name(self, symbol: sp.Symbol) -> str:

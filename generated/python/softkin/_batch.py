@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from softkin._array import Array, Codes, Programs, Real, Reals, Rotation, StartedPrograms, Truth, Vector, select
+from softkin._array_rotation import made_rotations
 from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
 from softkin._configuration import AUTOMATIC, COINCIDE, COINCIDENT, EDGE, FIRST, SECOND, TIE, slots
 from softkin._table import numbers, whole_numbers
@@ -43,7 +44,9 @@ def forward_from(
     def from_start(rows: slice) -> _Forward:
         x, y, z = columns(places[rows])
         a, b, c, d, e, f, g, h, i = columns(turns[rows].reshape(-1, 9))
-        return programs.forward_from(columns(values[rows]), (x, y, z), ((a, b, c), (d, e, f), (g, h, i)))
+        rotation, refused = made_rotations(((a, b, c), (d, e, f), (g, h, i)))
+        pose, status = programs.forward_from(columns(values[rows]), (x, y, z), rotation)
+        return pose, _later(refused, status)
 
     return _poses(robot, values, from_start)
 
@@ -84,10 +87,10 @@ def inverse(
     codes = whole_numbers(given, table.count, len(robot.CONFIGURATION), "configurations")
     axes, statuses = np.empty((table.count, len(robot.AXES))), np.empty(table.count, np.uint8)
     for rows in _chunks(table.count):
-        poses, chosen = table.at(rows), configurations(robot, codes[rows])
         with np.errstate(all="ignore"):
+            poses, chosen = table.at(rows), configurations(robot, codes[rows])
             found, status = _chosen(robot, programs, poses, chosen)
-            status = _limited(robot, programs, found, status)
+            status = _limited(robot, programs, found, _later(poses.refused, status))
         _write(axes[rows], found, status != Status.OK)
         statuses[rows] = status
     return axes, statuses
@@ -108,18 +111,23 @@ def inverse_all(
     # Columns whose distance is no power of two: such columns displace each other from the cache when they become rows.
     columns_of_slots = np.empty((len(every), width, min(table.count, CHUNK) + 8))
     for rows in _chunks(table.count):
-        poses = table.at(rows)
-        cells = columns_of_slots[:, :, : poses.count]
         with np.errstate(all="ignore"):
+            poses = table.at(rows)
+            cells = columns_of_slots[:, :, : poses.count]
             for slot, (found, status) in enumerate(
                 programs.every_branch(poses.position, poses.rotation, turns, poses.reference, signs)
             ):
-                statuses[rows, slot] = _limited(robot, programs, found, status)
+                statuses[rows, slot] = _limited(robot, programs, found, _later(poses.refused, status))
                 for i, value in enumerate(found):
                     cells[slot, i] = value
         axes[rows] = cells.transpose(2, 0, 1)
         axes[rows][statuses[rows] != Status.OK] = np.nan
     return axes, statuses
+
+
+def _later(refused: Codes, status: Codes) -> Codes:
+    """The statuses of a call, where the rotation is not refused before."""
+    return np.where(refused == Status.OK, status, refused) if refused.any() else status
 
 
 def _limited(robot: Mechanism, programs: Programs, axes: Reals, status: Codes) -> Codes:

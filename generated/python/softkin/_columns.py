@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from softkin._array import Array, Real, Reals, Rotation, Vector
+from softkin._array import Array, Codes, Real, Reals, Rotation, Vector
+from softkin._array_rotation import made_rotations
 from softkin._configuration import AUTOMATIC, COINCIDE, FIRST, SECOND
 from softkin._table import numbers
 from softkin._types import Configuration, KinematicsError, Status
@@ -32,12 +33,15 @@ class Poses:
     position: Vector
     rotation: Rotation
     reference: Reals
+    refused: Codes
+    """The statuses of the rotations: one for all rows where none is read."""
 
     def at(self, rows: Rows, count: int) -> Poses:
         """Those of some rows, that many."""
         (x, y, z), *cells = (tuple(_at(v, rows) for v in part) for part in (self.position, *self.rotation))
         (a, b, c), (d, e, f), (g, h, i) = cells
-        return Poses(count, (x, y, z), ((a, b, c), (d, e, f), (g, h, i)), tuple(_at(v, rows) for v in self.reference))
+        reference = tuple(_at(v, rows) for v in self.reference)
+        return Poses(count, (x, y, z), ((a, b, c), (d, e, f), (g, h, i)), reference, _codes_at(self.refused, rows))
 
 
 class Table:
@@ -59,14 +63,15 @@ class Table:
             self._rotations = numbers(rotations, self.count, (3, 3), "rotations").reshape(self.count, 9)
 
     def at(self, rows: slice) -> Poses:
-        """Some rows."""
+        """Some rows, with rotations as they are used."""
         x, y, z = columns(self._positions[rows])
-        rotation = _IDENTITY
+        rotation, refused = _IDENTITY, np.zeros((), np.uint8)
         if self._rotations is not None:
             a, b, c, d, e, f, g, h, i = columns(self._rotations[rows])
-            rotation = ((a, b, c), (d, e, f), (g, h, i))
+            rotation, refused = made_rotations(((a, b, c), (d, e, f), (g, h, i)))
         near = self._references
-        return Poses(len(x), (x, y, z), rotation, tuple(near[0]) if _is_one_row(near) else columns(near[rows]))
+        reference = tuple(near[0]) if _is_one_row(near) else columns(near[rows])
+        return Poses(len(x), (x, y, z), rotation, reference, refused)
 
 
 @dataclass(frozen=True)
@@ -132,6 +137,10 @@ def _number(column: Bytes) -> Real:
 
 def _at(value: Real, rows: Rows) -> Real:
     return value[rows] if isinstance(value, np.ndarray) else value
+
+
+def _codes_at(codes: Codes, rows: Rows) -> Codes:
+    return codes[rows] if codes.ndim else codes
 
 
 def _is_one_row(values: NDArray[np.float64] | Integers) -> bool:

@@ -21,6 +21,7 @@ from softkin._configuration import (
     squared_distance,
 )
 from softkin._input import bytes_of, parameter_value, pose_of, position_of, reals, unusable
+from softkin._rotation import in_words, made_rotation
 from softkin._solutions import Solutions
 from softkin._types import (
     Axis,
@@ -180,7 +181,8 @@ class Mechanism(ABC):
     ) -> Reals:
         """The axis values of a frame.
 
-        frame: position (3) and rotation (3 rows of 3), a `Frame` or any pair of sequences.
+        frame: position (3) and rotation (3 rows of 3), a `Frame` or any pair of sequences. A rotation to few digits, as
+        from single precision, is repaired: the direction of z is kept. Of R^T R - I no entry may be beyond 0.0001.
         configuration: see `CONFIGURATION`; without one, `DEFAULT_CONFIGURATION`. Where it leaves a branch open,
         the nearest to the reference is taken; where it leaves a period open, the value nearest to the reference.
         reference: one value an axis, the present axis values as a rule; without one, zeros.
@@ -189,7 +191,8 @@ class Mechanism(ABC):
         position, rows = self._pose(frame)
         near = self._near(reference)
         branches, turns = self._read(configuration)
-        axes = self._choose(lambda signs: self._branch(position, rows, signs, turns, near), branches, near)
+        rotation = self._used("inverse", rows)
+        axes = self._choose(lambda signs: self._branch(position, rotation, signs, turns, near), branches, near)
         if isinstance(axes, Status):
             self._fail("inverse", axes, position=position, rotation=rows, reference=near)
         return self._limited("inverse", axes)
@@ -201,13 +204,16 @@ class Mechanism(ABC):
         limits included. Raises BAD_INPUT only for what has not the form of a frame. The result is as a tuple of them.
         """
         position, rows = self._pose(frame)
-        found = self._every_branch(position, rows, self._near(reference))
-        return Solutions(found, slots((AUTOMATIC,) * self.BRANCHES), self._solution)
+        near, rotation = self._near(reference), self._made(rows)
+        every = slots((AUTOMATIC,) * self.BRANCHES)
+        if isinstance(rotation, Diagnosis):
+            return Solutions((float(rotation.status),) * len(every), every, self._solution)
+        return Solutions(self._every_branch(position, rotation, near), every, self._solution)
 
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops, in the slots of `inverse_all`: its axes, or None where it does not reach.
 
-        The input is trusted: plain tuples of floats, with a rotation that is one. An axis that no other moves with
+        The input is trusted: plain tuples of floats, with a rotation that is one to all digits. An axis that no other moves with
         is in any of its turns, and limits are not tested.
         """
         return tuple([self.branch(frame, signs, reference) for _, signs in slots((AUTOMATIC,) * self.BRANCHES)])
@@ -234,11 +240,14 @@ class Mechanism(ABC):
         for place, byte in zip(self._branch_bytes, branches, strict=True):
             if byte not in (0, 1, 2, 3):
                 return Diagnosis(Status.BAD_INPUT, "byte {byte} of the configuration means nothing".format(byte=place), 0.0)
+        rotation = self._made(rows)
+        if isinstance(rotation, Diagnosis):
+            return rotation
         branch, limits = self._explained()
         refusals: list[Diagnosis] = []
 
         def solved(signs: Reals) -> Reals | Status:
-            answer = branch(position, rows, signs, turns, near)
+            answer = branch(position, rotation, signs, turns, near)
             if isinstance(answer, Diagnosis):
                 refusals.append(answer)
                 return answer.status
@@ -330,8 +339,24 @@ class Mechanism(ABC):
         return Solution(self._joined(branches, (0,) * len(self.PERIOD_AXES)), None, _STATUSES[int(found)])
 
     def _pose(self, frame: FrameLike) -> tuple[Vector, Rotation]:
-        """Position and rotation; a rotation that nobody reads is not looked at."""
+        """Position and rotation as given; a rotation that nobody reads is not looked at."""
         return pose_of(frame) if self.READS_ROTATION else (position_of(frame), _IDENTITY)
+
+    def _made(self, rotation: Rotation) -> Rotation | Diagnosis:
+        """The commanded rotation as the programs read it, or why it is none."""
+        return made_rotation(rotation) if self.READS_ROTATION else rotation
+
+    def _used(self, call: str, rotation: Rotation) -> Rotation:
+        """The same of a call that raises."""
+        made = self._made(rotation)
+        if isinstance(made, Diagnosis):
+            self._refuse(call, made, rotation)
+        return made
+
+    def _refuse(self, call: str, refused: Diagnosis, rotation: Rotation) -> NoReturn:
+        """Raise the error of a call whose rotation is none."""
+        detail = unusable({"rotation": rotation}) or in_words(refused)
+        raise KinematicsError(refused.status, f"{self.NAME}.{call}: {refused.status.meaning}: {detail}")
 
     def _near(self, reference: Numbers | None) -> Reals:
         count = len(self.AXES)

@@ -7,7 +7,8 @@ from abc import abstractmethod
 from typing import TYPE_CHECKING, TypeAlias
 
 from softkin._core import Mechanism
-from softkin._types import OrientationImage, Rotation, Status, Vector
+from softkin._rotation import made_rotation
+from softkin._types import Diagnosis, OrientationImage, Rotation, Status, Vector
 
 if TYPE_CHECKING:
     from softkin._array import OrientationPrograms
@@ -36,9 +37,15 @@ class OrientationKinematics(Mechanism):
     def image_on(self, image: OrientationImage) -> OrientationImage:
         """The orientations of the tool on a flange with these orientations."""
         flange_axis, base_axis = turning_axis(image)
-        total = self._total_image(image.rotation, flange_axis, base_axis)
+        given = image.rotation
+        if self.FREEDOM != "three":  # else whatever the flange does, all orientations
+            made = made_rotation(given)
+            if isinstance(made, Diagnosis):
+                self._refuse("image_on", made, given)
+            given = made
+        total = self._total_image(given, flange_axis, base_axis)
         if isinstance(total, Status):
-            self._fail("image_on", total, rotation=image.rotation, flange_axis=flange_axis, base_axis=base_axis)
+            self._fail("image_on", total, flange_axis=flange_axis, base_axis=base_axis)
         rotation, base, flange, apart = total
         freedom = "three"
         if self.FREEDOM == "zero":

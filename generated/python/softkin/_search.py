@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from softkin._configuration import AUTOMATIC, Slot, slots
 from softkin._core import Mechanism
-from softkin._types import FrameLike, Numbers, Reals, Rotation, Solution, Status, Vector
+from softkin._types import Diagnosis, FrameLike, Numbers, Reals, Rotation, Solution, Status, Vector
 
 _FIRST: Reals = (0.0,)
 _SAME = 1e-4
@@ -30,8 +30,10 @@ class SearchedInverse(Mechanism):
         Raises BAD_INPUT only for what has not the form of a frame.
         """
         position, rows = self._pose(frame)
-        near = self._near(reference)
-        return tuple(self._ranks(slot, position, rows, near) for slot in slots((AUTOMATIC,) * self.BRANCHES))
+        near, rotation, every = self._near(reference), self._made(rows), slots((AUTOMATIC,) * self.BRANCHES)
+        if isinstance(rotation, Diagnosis):
+            return tuple(self._solution(slot, float(rotation.status)) for slot in every)
+        return tuple(self._ranks(slot, position, rotation, near) for slot in every)
 
     def _ranks(self, slot: Slot, position: Vector, rotation: Rotation, reference: Reals) -> Solution:
         """The solutions of a slot."""

@@ -34,10 +34,10 @@ class IterativeForward(Mechanism):
         if start is None:
             return super().forward(axes)
         values = reals(axes, len(self.AXES), "axes")
-        place, turn = position_of(start), rotation_of(start)
+        place, turn = position_of(start), self._used("forward", rotation_of(start))
         pose = self._forward_from(values, place, turn)
         if isinstance(pose, Status):
-            self._fail("forward", pose, axes=values, position=place, rotation=turn)
+            self._fail("forward", pose, axes=values, position=place)
         position, rows, measures = pose
         return Frame(position, rows), self._written(measures, values)
 

@@ -18,7 +18,7 @@ class TwistChoice(Mechanism):
 
     def project(self, rotation: Iterable[Numbers]) -> Rotation:
         """The rotation that the flange can have nearest to a commanded one, tool direction first. By rows."""
-        rows = rotation_by_rows(rotation)
+        rows = self._used("project", rotation_by_rows(rotation))
         nearest = self._projection(rows)
         if isinstance(nearest, Status):
             self._fail("project", nearest, rotation=rows)

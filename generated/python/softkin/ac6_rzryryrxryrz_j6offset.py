@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 168 additions, 184 multiplications, 43 divisions, 1 square roots, 16 sines
-    inverse: 79332 additions, 160328 multiplications, 19830 divisions, 7205 square roots, 14412 sines
-    inverse, all 16 branches open: 1269297 additions, 2565248 multiplications, 317280 divisions, 115280 square roots, 230592 sines
+    inverse: 79344 additions, 160346 multiplications, 19839 divisions, 7207 square roots, 14412 sines
+    inverse, all 16 branches open: 1269009 additions, 2564861 multiplications, 317289 divisions, 115282 square roots, 230592 sines
     search along the joint, from its reference outwards: at most 1800 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse searches along A6, from the reference
@@ -718,22 +718,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         swing_scale_q3_closed = k.swing_scale_q3_closed
         # numbers of reasonable size
         if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
-            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
-            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
             and -1e9 <= ref_a6 <= 1e9
         ):
-            return Status.BAD_INPUT
-        # columns of length one, at right angles
-        if not (
-            abs(r11*r12 + r21*r22 + r31*r32) <= 1e-6 and abs(r11*r13 + r21*r23 + r31*r33) <= 1e-6
-            and abs(r12*r13 + r22*r23 + r32*r33) <= 1e-6 and abs(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6
-            and abs(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6 and abs(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6
-        ):
-            return Status.BAD_INPUT
-        # a right-handed frame
-        if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return Status.BAD_INPUT
         wrist_x_closed = x - d6*r13  # the point that the last joints turn about
         wrist_y_closed = y - d6*r23

@@ -198,20 +198,7 @@ class Tool(OrientationKinematics):
         if not (
             -1e9 <= base_axis_x <= 1e9 and -1e9 <= base_axis_y <= 1e9 and -1e9 <= base_axis_z <= 1e9
             and -1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9
-            and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
-            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
-            and -1e9 <= r33 <= 1e9
         ):
-            return Status.BAD_INPUT
-        # columns of length one, at right angles
-        if not (
-            abs(r11*r12 + r21*r22 + r31*r32) <= 1e-6 and abs(r11*r13 + r21*r23 + r31*r33) <= 1e-6
-            and abs(r12*r13 + r22*r23 + r32*r33) <= 1e-6 and abs(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6
-            and abs(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6 and abs(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6
-        ):
-            return Status.BAD_INPUT
-        # a right-handed frame
-        if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return Status.BAD_INPUT
         return (
             ((r11, r12, r13), (r21, r22, r23), (r31, r32, r33)),

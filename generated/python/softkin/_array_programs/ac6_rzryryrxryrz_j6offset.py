@@ -264,35 +264,9 @@ class ArrayPrograms(Programs):
         require(
             status,
             (
-                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-                & (absolute(r33) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        require(
-            status,
-            (
                 (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9)
                 & (absolute(ref_a4) <= 1e9) & (absolute(ref_a5) <= 1e9) & (absolute(ref_a6) <= 1e9)
             ),
-            Status.BAD_INPUT,
-        )
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
-                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
-                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
-                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
-                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
         wrist_x_closed = x - d6*r13  # the point that the last joints turn about

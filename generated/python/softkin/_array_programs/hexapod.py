@@ -358,35 +358,7 @@ class ArrayPrograms(StartedPrograms):
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(start_r11) <= 1e9) & (absolute(start_r12) <= 1e9) & (absolute(start_r13) <= 1e9)
-                & (absolute(start_r21) <= 1e9) & (absolute(start_r22) <= 1e9) & (absolute(start_r23) <= 1e9)
-                & (absolute(start_r31) <= 1e9) & (absolute(start_r32) <= 1e9) & (absolute(start_r33) <= 1e9)
-                & (absolute(start_x) <= 1e9) & (absolute(start_y) <= 1e9) & (absolute(start_z) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(start_r11*start_r12 + start_r21*start_r22 + start_r31*start_r32) <= 1e-6)
-                & (absolute(start_r11*start_r13 + start_r21*start_r23 + start_r31*start_r33) <= 1e-6)
-                & (absolute(start_r12*start_r13 + start_r22*start_r23 + start_r32*start_r33) <= 1e-6)
-                & (absolute(start_r11*start_r11 + start_r21*start_r21 + start_r31*start_r31 - 1.0) <= 1e-6)
-                & (absolute(start_r12*start_r12 + start_r22*start_r22 + start_r32*start_r32 - 1.0) <= 1e-6)
-                & (absolute(start_r13*start_r13 + start_r23*start_r23 + start_r33*start_r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status,
-            (
-                start_r11*(start_r22*start_r33 - start_r23*start_r32)
-                + (start_r13*start_r32 - start_r12*start_r33)*start_r21
-                + (start_r12*start_r23 - start_r13*start_r22)*start_r31 > 0.0
-            ),
+            (absolute(start_x) <= 1e9) & (absolute(start_y) <= 1e9) & (absolute(start_z) <= 1e9),
             Status.BAD_INPUT,
         )
         # the platform on its rods, searched from the given start
@@ -494,32 +466,6 @@ class ArrayPrograms(StartedPrograms):
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(
-            status,
-            (
-                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-                & (absolute(r33) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
-                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
-                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
-                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
-                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
-            Status.BAD_INPUT,
-        )
         span_1_x = x + platform_1_x*r11 + platform_1_y*r12 + platform_1_z*r13 - base_1_x  # rod 1
         span_1_y = y + platform_1_x*r21 + platform_1_y*r22 + platform_1_z*r23 - base_1_y  # rod 1
         span_1_z = z + platform_1_x*r31 + platform_1_y*r32 + platform_1_z*r33 - base_1_z  # rod 1

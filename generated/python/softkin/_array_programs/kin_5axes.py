@@ -87,7 +87,7 @@ class ArrayPrograms(Programs):
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
         x, y, z = position
-        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         (sigma_roll,) = signs
         turn_a, turn_b = turns
         _, _, _, ref_a, ref_b = reference
@@ -106,33 +106,7 @@ class ArrayPrograms(Programs):
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(
-            status,
-            (
-                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-                & (absolute(r33) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
         require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
-                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
-                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
-                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
-                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
-            Status.BAD_INPUT,
-        )
         wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length*tool_side
@@ -199,7 +173,7 @@ class ArrayPrograms(Programs):
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
         x, y, z = position
-        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         turn_a, turn_b = turns
         _, _, _, ref_a, ref_b = reference
         k = self.constants
@@ -217,33 +191,7 @@ class ArrayPrograms(Programs):
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
-        require(
-            status,
-            (
-                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-                & (absolute(r33) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
         require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
-                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
-                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
-                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
-                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
-            Status.BAD_INPUT,
-        )
         wrist_x = x - r13*tool_length*tool_side  # the point that the last joints turn about
         axis_x = offset_x + wrist_x
         wrist_y = y - r23*tool_length*tool_side

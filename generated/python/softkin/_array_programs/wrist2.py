@@ -78,7 +78,7 @@ class ArrayPrograms(OrientationPrograms):
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
-        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         (sigma_roll,) = signs
         turn_a, turn_b = turns
         ref_a, ref_b = reference
@@ -92,33 +92,7 @@ class ArrayPrograms(OrientationPrograms):
         tool_side = k.tool_side
         status = passed(position)
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-                & (absolute(r33) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
         require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
-                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
-                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
-                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
-                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
-            Status.BAD_INPUT,
-        )
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point
@@ -164,7 +138,7 @@ class ArrayPrograms(OrientationPrograms):
 
     def carried(self, rotation: Rotation, flange_axis: Vector, base_axis: Vector) -> tuple[Vector, Codes]:
         """From a flange that turns to the end point."""
-        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         base_axis_x, base_axis_y, base_axis_z = base_axis
         k = self.constants
@@ -182,32 +156,6 @@ class ArrayPrograms(OrientationPrograms):
             ),
             Status.BAD_INPUT,
         )
-        require(
-            status,
-            (
-                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-                & (absolute(r33) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
-                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
-                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
-                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
-                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
-            Status.BAD_INPUT,
-        )
         flange_along = flange_axis_z*roll_axis_offset_z  # what the flange holds, along the axis that it turns about
         return (
             (
@@ -222,7 +170,7 @@ class ArrayPrograms(OrientationPrograms):
         self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
-        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        (_, _, r13), (_, _, r23), (_, _, r33) = rotation
         turn_a, turn_b = turns
         ref_a, ref_b = reference
         k = self.constants
@@ -235,33 +183,7 @@ class ArrayPrograms(OrientationPrograms):
         tool_side = k.tool_side
         status = passed(position)
         # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-                & (absolute(r33) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
         require(status, (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9), Status.BAD_INPUT)
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
-                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
-                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
-                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
-                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
-            Status.BAD_INPUT,
-        )
         r13_of_a = r13/tool_side
         r23_of_a = r23/tool_side
         radius_a = sqrt(r13_of_a*r13_of_a + r23_of_a*r23_of_a)  # a: direction and distance of a point

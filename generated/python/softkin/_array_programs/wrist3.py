@@ -90,7 +90,7 @@ class ArrayPrograms(OrientationPrograms):
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
     ) -> tuple[Reals, Codes]:
         """The axes of one branch, periods included, limits not."""
-        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
         (sigma_hand,) = signs
         turn_a, turn_b, turn_c = turns
         ref_a, ref_b, ref_c = reference
@@ -108,33 +108,7 @@ class ArrayPrograms(OrientationPrograms):
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-                & (absolute(r33) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        require(
-            status,
             (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9),
-            Status.BAD_INPUT,
-        )
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
-                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
-                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
-                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
-                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point
@@ -194,33 +168,6 @@ class ArrayPrograms(OrientationPrograms):
         tool_offset_y = k.tool_offset_y
         tool_offset_z = k.tool_offset_z
         status = passed(rotation[0])
-        # numbers of reasonable size
-        require(
-            status,
-            (
-                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-                & (absolute(r33) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
-                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
-                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
-                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
-                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
-            Status.BAD_INPUT,
-        )
         return (
             (
                 r11*tool_offset_x + r12*tool_offset_y + r13*tool_offset_z,
@@ -234,7 +181,7 @@ class ArrayPrograms(OrientationPrograms):
         self, position: Vector, rotation: Rotation, turns: Reals, reference: Reals, signs: Sequence[Reals],
     ) -> tuple[tuple[Reals, Codes], ...]:
         """Every slot: its axes and statuses."""
-        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        (r11, r12, _), (r21, r22, _), (r31, r32, r33) = rotation
         turn_a, turn_b, turn_c = turns
         ref_a, ref_b, ref_c = reference
         k = self.constants
@@ -251,33 +198,7 @@ class ArrayPrograms(OrientationPrograms):
         # numbers of reasonable size
         require(
             status,
-            (
-                (absolute(r11) <= 1e9) & (absolute(r12) <= 1e9) & (absolute(r13) <= 1e9) & (absolute(r21) <= 1e9)
-                & (absolute(r22) <= 1e9) & (absolute(r23) <= 1e9) & (absolute(r31) <= 1e9) & (absolute(r32) <= 1e9)
-                & (absolute(r33) <= 1e9)
-            ),
-            Status.BAD_INPUT,
-        )
-        require(
-            status,
             (absolute(ref_a) <= 1e9) & (absolute(ref_b) <= 1e9) & (absolute(ref_c) <= 1e9),
-            Status.BAD_INPUT,
-        )
-        # columns of length one, at right angles
-        require(
-            status,
-            (
-                (absolute(r11*r12 + r21*r22 + r31*r32) <= 1e-6) & (absolute(r11*r13 + r21*r23 + r31*r33) <= 1e-6)
-                & (absolute(r12*r13 + r22*r23 + r32*r33) <= 1e-6)
-                & (absolute(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6)
-                & (absolute(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6)
-                & (absolute(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6)
-            ),
-            Status.BAD_INPUT,
-        )
-        # a right-handed frame
-        require(
-            status, r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0,
             Status.BAD_INPUT,
         )
         radius_c = sqrt(r31*r31 + r32*r32)  # c: direction and distance of a point

@@ -38,20 +38,10 @@ def branch(
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     if not (
-        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
-        and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
-        and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a4 <= 1e9
+        -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a4 <= 1e9
         and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-    if not (
-        abs(r11*r12 + r21*r22 + r31*r32) <= 1e-6 and abs(r11*r13 + r21*r23 + r31*r33) <= 1e-6
-        and abs(r12*r13 + r22*r23 + r32*r33) <= 1e-6 and abs(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6
-        and abs(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6 and abs(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6
-    ):
-        return Diagnosis(Status.BAD_INPUT, "not given: columns of length one, at right angles", 0.0)
-    if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
-        return Diagnosis(Status.BAD_INPUT, "not given: a right-handed frame", 0.0)
     wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13
     axis_a1 = offset_a1 + wrist_x
     wrist_y = y - flange_x*r21 - flange_y*r22 - flange_z*r23

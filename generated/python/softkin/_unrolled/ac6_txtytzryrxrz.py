@@ -51,21 +51,9 @@ def unrolled(k: Constants) -> Unrolled:
         _, _, _, ref_a4, ref_a5, ref_a6 = reference
         # numbers of reasonable size
         if not (
-            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9
-            and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9 and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9
-            and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9 and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a4 <= 1e9
+            -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a4 <= 1e9
             and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9
         ):
-            return 2*(2.0,)
-        # columns of length one, at right angles
-        if not (
-            abs(r11*r12 + r21*r22 + r31*r32) <= 1e-6 and abs(r11*r13 + r21*r23 + r31*r33) <= 1e-6
-            and abs(r12*r13 + r22*r23 + r32*r33) <= 1e-6 and abs(r11*r11 + r21*r21 + r31*r31 - 1.0) <= 1e-6
-            and abs(r12*r12 + r22*r22 + r32*r32 - 1.0) <= 1e-6 and abs(r13*r13 + r23*r23 + r33*r33 - 1.0) <= 1e-6
-        ):
-            return 2*(2.0,)
-        # a right-handed frame
-        if not (r11*(r22*r33 - r23*r32) + (r13*r32 - r12*r33)*r21 + (r12*r23 - r13*r22)*r31 > 0.0):
             return 2*(2.0,)
         wrist_x = x - flange_x*r11 - flange_y*r12 - flange_z*r13  # the point that the last joints turn about
         axis_a1 = offset_a1 + wrist_x

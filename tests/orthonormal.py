@@ -1,0 +1,66 @@
+"""Matrices that are rotations but for an error, and the rotation that is meant: by NumPy, from the definition alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+ALLOWED, REFUSED = 0.9e-4, 1.1e-4
+"""Errors on both sides of what is a rotation."""
+
+
+def error(matrix: Array) -> float:
+    """The largest entry of |R^T R - I|."""
+    return float(np.abs(matrix.T @ matrix - np.eye(3)).max())
+
+
+def repaired(matrix: Array) -> Array:
+    """The direction of z, what of x is perpendicular to it, and what is perpendicular to both: each of length one."""
+    z = matrix[:, 2] / np.linalg.norm(matrix[:, 2])
+    x = matrix[:, 0] - (matrix[:, 0] @ z) * z
+    x = x / np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+def single(matrix: Array) -> Array:
+    """The matrix rounded to single precision."""
+    return matrix.astype(np.float32).astype(np.float64)
+
+
+def slightly_off(rotation: Array) -> Iterator[Array]:
+    """Rotations that are accepted and repaired: as REAL, and off by 0.9e-4 in every way."""
+    yield single(rotation)
+    yield from _off(rotation, ALLOWED)
+
+
+def too_far_off(rotation: Array) -> Iterator[Array]:
+    """The same beyond what is accepted."""
+    yield from _off(rotation, REFUSED)
+
+
+def mirrored(rotation: Array) -> Iterator[Array]:
+    """Left-handed."""
+    yield -rotation
+    for k in range(3):
+        yield rotation @ np.diag([-1.0 if k == i else 1.0 for i in range(3)])
+    yield rotation[:, [1, 0, 2]]
+
+
+def _off(rotation: Array, size: float) -> Iterator[Array]:
+    """Longer and shorter columns, and columns that lean towards each other, so that the largest error is of that size."""
+    for k in range(3):
+        for sign in (1.0, -1.0):
+            factors = np.ones(3)
+            factors[k] = np.sqrt(1.0 + sign * size)
+            yield rotation @ np.diag(factors)
+    for sign in (1.0, -1.0):
+        yield rotation * np.sqrt(1.0 + sign * size)
+        for i, j in combinations(range(3), 2):
+            for leaning, other in ((i, j), (j, i)):
+                matrix = rotation.copy()
+                matrix[:, leaning] = np.sqrt(1.0 - size**2) * rotation[:, leaning] + sign * size * rotation[:, other]
+                yield matrix
