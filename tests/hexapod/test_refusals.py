@@ -30,7 +30,7 @@ def test_what_is_no_number(wrong: float) -> None:
     assert block.inverse((0.0, 0.0, wrong), EYE, (), (0.0,) * 6) == (BAD_INPUT, None)
 
 
-@pytest.mark.parametrize("turn", [EYE * 1.1, np.diag((1.0, 1.0, -1.0)), EYE + 1e-5, EYE * np.nan, EYE * 1e200])
+@pytest.mark.parametrize("turn", [EYE * 1.1, np.diag((1.0, 1.0, -1.0)), EYE + 1.1e-4, EYE * np.nan, EYE * 1e200])
 def test_what_is_no_rotation(turn: Array) -> None:
     robot = machines()["nominal"].robot
     for call in (
@@ -44,6 +44,9 @@ def test_what_is_no_rotation(turn: Array) -> None:
     assert robot.forward_batch([(650.0,) * 6] * 2, starts)[3].tolist() == [Status.BAD_INPUT, Status.OK]
     assert controller("nominal").inverse((0.0, 0.0, 600.0), turn, (), (0.0,) * 6) == (BAD_INPUT, None)
     assert controller("nominal").image_with_orientation(turn)[0] == BAD_INPUT
+    found = robot.diagnose(((0.0, 0.0, 600.0), turn))
+    assert found.reason
+    assert controller("nominal").diagnose((0.0, 0.0, 600.0), turn, (), (0.0,) * 6) == (found.reason, found.missing)
 
 
 def test_a_start_that_is_no_number_is_refused() -> None:

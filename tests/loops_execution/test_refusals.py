@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.execution import test_garbage, test_initialise, test_not_initialised
+from tests.execution import test_garbage, test_initialise, test_not_initialised, test_single_precision
 from tests.execution.comparisons import POSELESS
 from tests.execution.controller import IMPOSSIBLE, NOT_INITIALIZED, OK, UNREACHABLE, Controller
 from tests.execution.twins import Twins
@@ -22,7 +22,7 @@ GARBAGE_TESTS = (
     test_garbage.test_garbage_in_axes_as_in_python,
     test_garbage.test_garbage_in_a_command_as_in_python,
     test_garbage.test_what_is_no_rotation,
-    test_garbage.test_a_small_error_of_a_rotation_is_allowed,
+    test_single_precision.test_beyond_that_it_is_refused_with_the_same_reason,
     test_garbage.test_the_largest_numbers,
 )
 INITIALISE_TESTS = (test_initialise.test_every_parameter_is_checked, test_initialise.test_the_ends_of_a_range_belong_to_it)
