@@ -218,8 +218,9 @@ def _offset_configuration(
 
 
 def _limits_program(mechanism: Mechanism) -> Program:
-    """Every axis, then every quantity with limits of its own, inside its widened limits."""
-    body: list[Statement] = [_inside(j.key, j.axis, f"limits of {j.name}") for j in mechanism.joints]
+    """Every axis, those with several turns first, then every quantity with limits of its own, inside its widened limits."""
+    turning_first = sorted(mechanism.joints, key=lambda j: not j.multi_turn)  # what a turn carries along follows it
+    body: list[Statement] = [_inside(j.key, j.axis, f"limits of {j.name}") for j in turning_first]
     if mechanism.limited:
         body += joint_lets(mechanism)
     for quantity in mechanism.limited:

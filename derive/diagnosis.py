@@ -7,7 +7,7 @@ or there is nothing to measure.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import reduce
 
 import sympy as sp
@@ -17,11 +17,13 @@ from derive.dimensions import Role
 from derive.kinematics import Kinematics
 from derive.legs import SCALE
 from derive.orthonormal import rotation_program
+from derive.other_turns import OtherTurn, other_turns
 from derive.program import DEGREE, Atan2, Call, Iterate, Let, Require, Root, Select, Status
 
 NOT_INITIALIZED = "not initialized"
 NO_MEANING = "byte {byte} of the configuration means nothing"
 _LENGTH, _ANGLE = "u", "deg"
+_TURN = ": this turn{axis} is beyond a limit, name one inside"
 _NOTHING = sp.Integer(0)
 
 
@@ -34,6 +36,8 @@ class Check:
     reason: str
     missing: sp.Expr
     """How much one side is short of the other; zero where that means nothing."""
+    turns: tuple[tuple[OtherTurn, str], ...] = ()
+    """What may be inside on another turn, with the reason where it is: the first that is gives reason and number."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,8 @@ class Reasons:
     lengths: frozenset[str]
     """The parameters that are lengths, and the scale of the machine."""
     definitions: Mapping[sp.Symbol, sp.Expr]
+    turns: Mapping[str, tuple[OtherTurn, ...]] = field(default_factory=dict)
+    """The axes whose turn may be at fault, by the names of the constants."""
 
     def checks(self, requires: Iterable[Require]) -> list[Check]:
         """What requirements ask, in a fixed order: one check for every reason that has an amount, one for others alike."""
@@ -72,11 +78,18 @@ class Reasons:
             return
         for part in sp.ordered(sp.And.make_args(require.condition)):
             missing = self._missing(part)
-            yield Check((part,), require.otherwise, self._reason(require.note, missing), missing.amount)
+            turns = tuple(self._turns(require.note, part, missing))
+            yield Check((part,), require.otherwise, self._reason(require.note, missing), missing.amount, turns)
 
     def loop(self, loop: Iterate) -> str:
         """Why a loop that was never left refuses."""
         return self._reason(loop.note, Missing(_NOTHING))
+
+    def _turns(self, note: str, part: sp.Basic, missing: Missing) -> Iterator[tuple[OtherTurn, str]]:
+        """The axes that may be inside on another turn, where a limit refuses, and what to say then."""
+        name = part.rhs.name if isinstance(part, Relational) and part.rhs.is_Symbol else ""
+        for turn in self.turns.get(name, ()):
+            yield turn, self._reason(note, replace(missing, side=_TURN.format(axis=turn.of(note))))
 
     def _reason(self, note: str, missing: Missing) -> str:
         subject, colon, rest = note.removeprefix("limits of ").partition(":")
@@ -156,6 +169,7 @@ def reasons_of(kinematics: Kinematics) -> Reasons:
         limits,
         frozenset({SCALE.name} | {p.name for p in kinematics.parameters if p.role is Role.LENGTH}),
         {s.name: s.value for p in programs for s in p.body if isinstance(s, Let)},
+        other_turns(kinematics.mechanism),
     )
 
 
@@ -165,7 +179,7 @@ def texts(kinematics: Kinematics) -> tuple[str, ...]:
     found: list[str] = []
     for statement in (*kinematics.branch.body, *kinematics.limits.body):
         if isinstance(statement, Require):
-            found += [c.reason for c in reasons.checks([statement])]
+            found += [text for c in reasons.checks([statement]) for text in (c.reason, *(why for _, why in c.turns))]
         elif isinstance(statement, Iterate):
             found.append(reasons.loop(statement))
     return tuple(dict.fromkeys(found))

@@ -81,9 +81,10 @@ def axis_lets(joint: Joint) -> tuple[Let, ...]:
 
 
 def _near(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
-    """The axis value that the period is chosen nearest to: commanded turn, middle of a single turn, or reference.
+    """The axis value that the period is chosen nearest to: commanded turn, middle of a range with one value inside, or reference.
 
-    The reference is compared joint by joint: with gear coupling an axis moves with its neighbours.
+    Limits never choose again: in a wider range the other value inside may be a step away. The reference is compared joint
+    by joint: with gear coupling an axis moves with its neighbours.
     """
     shift = -joint.coupling / joint.unit
     reference = joint.reference if joint.coupling == 0 else free(joint) / joint.unit + joint.offset + shift

@@ -11,7 +11,7 @@ from derive.legs import SCALE as SCALE
 from derive.mechanism import Joint, Mechanism, Parameter, Role
 from derive.passes import bare
 from derive.platform import machine_constants, machine_statements
-from derive.program import LARGEST, LIMIT, UNLIMITED, Let, Output, Program, Require, Select, Statement, Status, real
+from derive.program import LARGEST, LIMIT, ONE_TURN, UNLIMITED, Let, Output, Program, Require, Select, Statement, Status, real
 from derive.verify import verify
 
 CHECK_LIMITS = "check_limits"
@@ -24,7 +24,8 @@ def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
         parameters.append(_number(joint, "offset", "axis value at the kinematic zero position", joint.offset_range))
     for joint in mechanism.joints:
         for word in ("lower", "upper"):
-            parameters.append(_number(joint, word, f"{word} limit of the axis, both 0: no limit", joint.limit_range))
+            meaning = f"{word} limit of the axis, both 0: {_without_limits(joint)}"
+            parameters.append(_number(joint, word, meaning, joint.limit_range))
     for quantity in mechanism.limited:
         unit = "deg" if quantity.is_angle else "u"
         for word in ("lower", "upper"):
@@ -145,6 +146,17 @@ def _fallback(joint: Joint) -> Fallback:
     return tuple(found)
 
 
+def _without_limits(joint: Joint) -> str:
+    """What limits an axis that is given none: see `_fallback`."""
+    if joint.domain is not None:
+        low, high = joint.domain
+        return f"joint value {low:g} .. {high:g}" if high < float(LARGEST) else f"joint value {low:g} or more"
+    if joint.pitch != 0 and joint.limit_range is not None:
+        low, high = joint.limit_range
+        return f"no limit, but {low:g} .. {high:g} while it has a pitch"
+    return "no limit"
+
+
 def _limits(key: str, fallback: Fallback) -> tuple[Let, ...]:
     lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
     low, high, unlimited = (real(f"{word}_{key}") for word in ("effective_lower", "effective_upper", "unlimited"))
@@ -175,12 +187,12 @@ def _limit_outputs(key: str) -> list[Output]:
 
 
 def _turn_window(joint: Joint) -> tuple[Let, ...]:
-    """Whether the axis has one value inside its limits for every direction, and the middle of its range."""
+    """Whether the axis has one value inside its limits at most, with a gap that no step crosses; and the middle of its range."""
     if not joint.multi_turn:
         return ()
     low, high, unlimited = (real(f"{w}_{joint.key}") for w in ("effective_lower", "effective_upper", "unlimited"))
-    one_turn = sp.And(sp.Le(unlimited, 0), sp.Le(high - low, 360))
+    one_turn = sp.And(sp.Le(unlimited, 0), sp.Le(high - low, ONE_TURN + real(f"tolerance_{joint.key}")))
     return (
-        Let(real(f"single_{joint.key}"), Select(one_turn, sp.Integer(1), sp.Integer(0)), "range of one turn at most"),
+        Let(real(f"single_{joint.key}"), Select(one_turn, sp.Integer(1), sp.Integer(0)), "one value inside the limits"),
         Let(real(f"mid_{joint.key}"), (low + high) / 2),
     )

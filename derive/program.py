@@ -70,6 +70,8 @@ SCAN_PASSES = 1800
 """Trials of a search in all: the scan, and some thirty roots of other branches that are closed in on the way."""
 TIE = sp.Float("1e-6")
 """An automatic choice takes a later branch only where its squared distance is smaller by more than this."""
+ONE_TURN = sp.Integer(350)
+"""An axis has one value inside its limits where they are at most this far apart (degrees): no step of a path crosses the gap."""
 EDGE = sp.Float("1e-9")
 """How far (degrees) the intervals of the periods are shifted down: see `NearestPeriod`."""
 UNLIMITED = sp.Integer(10) ** 12

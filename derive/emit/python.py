@@ -19,7 +19,20 @@ from derive.emit.python_program import Method, array_body, functions, has_loop, 
 from derive.emit.python_rotation import rotation_functions
 from derive.emit.python_unrolled import array_lines, array_method, can_be_unrolled, unrolled
 from derive.kinematics import Kinematics
-from derive.program import EDGE, EXACT_ROTATION, FREE_ANGLE, HELD, LARGEST, PIVOT, ROTATION, SINGULAR, SOLVABLE, TIE, Status
+from derive.program import (
+    EDGE,
+    EXACT_ROTATION,
+    FREE_ANGLE,
+    HELD,
+    LARGEST,
+    ONE_TURN,
+    PIVOT,
+    ROTATION,
+    SINGULAR,
+    SOLVABLE,
+    TIE,
+    Status,
+)
 
 name = "python"
 
@@ -99,6 +112,7 @@ def _templates() -> Environment:
         "rotation": rotation_functions(),
         "largest_error": literal(float(ROTATION)),
         "exact": literal(float(EXACT_ROTATION)),
+        "one_turn": literal(int(ONE_TURN)),
         "pivot": literal(float(PIVOT)),
         "singular": literal(float(SINGULAR)),
         "solvable": literal(float(SOLVABLE)),

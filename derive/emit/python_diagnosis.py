@@ -13,6 +13,7 @@ from derive.emit.python_methods import branch, limits
 from derive.emit.python_printer import ScalarPrinter, primitives_in
 from derive.emit.python_program import Method, Refusals, conjunction, scalar_body
 from derive.kinematics import Kinematics
+from derive.other_turns import OtherTurn
 from derive.program import Iterate, Require, Status
 
 _PRINTER = ScalarPrinter()
@@ -24,6 +25,7 @@ def diagnosis(kin: Kinematics) -> dict[str, object]:
     methods = (branch(kin), limits(kin))
     bodies = [_body(m, refusals) for m in methods]
     return {
+        "names_turns": any("turn_inside" in line for body in bodies for line in body),
         "primitives": primitives_in(line for body in bodies for line in body if '"' not in line),
         "functions": [{"head": _head(m), "summary": m.summary, "body": b} for m, b in zip(methods, bodies, strict=True)],
     }
@@ -57,15 +59,31 @@ class Explained(Refusals):
         return self._refused(loop.otherwise, self.reasons.loop(loop))
 
     def reads(self, require: Require) -> tuple[sp.Expr, ...]:
-        """The amounts."""
-        return tuple(check.missing for check in self.reasons.checks([require]))
+        """The amounts, and what other turns are compared with."""
+        checks = self.reasons.checks([require])
+        turns = [turn for check in checks for turn, _ in check.turns]
+        return (*(c.missing for c in checks), *(e for t in turns for e in (t.axis, *t.lowest, *t.highest)))
 
     def _lines(self, requires: Sequence[Require]) -> Iterator[str]:
         for check in self.reasons.checks(requires):
             yield from fold(f"if not ({conjunction(check.conditions)}):")
             missing = fold(f"missing = {_PRINTER.print(check.missing)}") if check.missing != 0 else []
-            refused = self._refused(check.status, check.reason, "missing" if missing else "0.0")
-            yield from (f"    {line}" for line in (*missing, *fold(refused)))
+            amount = "missing" if missing else "0.0"
+            inside = [line for turn, reason in check.turns for line in self._on_another(turn, check.status, reason, amount)]
+            refused = fold(self._refused(check.status, check.reason, amount))
+            yield from (f"    {line}" for line in (*missing, *inside, *refused))
+
+    def _on_another(self, turn: OtherTurn, status: Status, reason: str, missing: str) -> list[str]:
+        """Refuse because of the turn, where another one is inside."""
+        low, high = (_one(word, ends) for word, ends in (("max", turn.lowest), ("min", turn.highest)))
+        head = fold(f"if turn := turn_inside({_PRINTER.print(turn.axis)}, {low}, {high}):")
+        return [*head, *(f"    {line}" for line in fold(self._refused(status, reason, f"{missing}, turn")))]
 
     def _refused(self, status: Status, reason: str, missing: str = "0.0") -> str:
         return f'return Diagnosis({self.answer(status)}, "{reason}", {missing})'
+
+
+def _one(word: str, ends: Sequence[sp.Expr]) -> str:
+    """The largest or the smallest of one or more ends."""
+    texts = [_PRINTER.print(end) for end in ends]
+    return f"{word}({', '.join(texts)})" if len(texts) > 1 else texts[0]

@@ -85,7 +85,7 @@ def signs(kin: Kinematics) -> tuple[Sign, ...]:
 
 
 def every_branch(kin: Kinematics) -> Program:
-    """All branches, periods nearest to the reference, limits tested."""
+    """All branches, periods open, limits tested."""
     program = with_twins(unroll(with_fewer_signs(_nearest(kin, with_limits(kin.branch, kin.limits))), signs(kin)))
     return common_parts(program, signs(kin), _constants(kin))
 

@@ -13,12 +13,12 @@ from derive.diagnosis import workspace
 from derive.emit.st_block import Block
 from derive.emit.st_names import input_name, respelled
 from derive.kinematics import Kinematics
-from derive.mechanism import Kind
-from derive.program import EXACT_ROTATION, ROTATION
+from derive.mechanism import Kind, Role
+from derive.program import EXACT_ROTATION, ONE_TURN, ROTATION
 
 _WIDTH = 100
 _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
-_PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 the value nearest to the reference"
+_PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 open"
 _BRANCH = "0 automatic, 3 where both solutions coincide"
 _READ = (
     f"A commanded rotation may be one to a few digits only, as from REAL: where its transpose times itself differs from the "
@@ -27,6 +27,13 @@ _READ = (
 )
 _NOT_READ = "The commanded rotation is not looked at."
 _COST_HEAD = ("Method", "Additions", "Multiplications", "Divisions", "Square roots", "Sines")
+_OPEN_TURN = (
+    f"A turn that is left open: an axis whose limits in the block are at most {ONE_TURN} degrees apart takes its one value "
+    "inside them, wherever the reference is. Any other takes the value nearest to the reference, and the limits alone refuse: "
+    f"they choose no other turn. So enter the limits of a range of up to {ONE_TURN} degrees in the block, too; of an axis with a "
+    "wider range name the turn for point-to-point movements. Where the turn is what refuses, Diagnose says so, and iTurn is "
+    "the one to name."
+)
 _KINDS = {
     (True, False): "Position kinematics for a SoftMotion axis group. ",
     (False, True): "Orientation kinematics, to be combined with a position kinematics for a SoftMotion axis group. ",
@@ -52,6 +59,7 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
         rows=", ".join(kinematics.rows),
         axes=_table(("Axis", "Motion", "Meaning"), _axes(kinematics)),
         parameters=_table(("Parameter", "Unit", "Range", "Meaning"), _parameters(block)),
+        refused=wrap(f"{_refused(kinematics)}The parameters are read by Initialize alone.", _WIDTH),
         configuration=list(_configuration(block)),
         singularities=list(_singularities(kinematics)),
         workspace=list(_workspace(kinematics)),
@@ -72,6 +80,12 @@ def _parameters(block: Block) -> Iterator[Sequence[str]]:
         yield given.name, given.unit or "-", given.range or given.type, given.meaning
 
 
+def _refused(kinematics: Kinematics) -> str:
+    """The lengths that may not be 0, which is what they are where nothing is given."""
+    lengths = [input_name(p) for p in kinematics.parameters if p.role in (Role.LENGTH, Role.SIGNED_LENGTH)]
+    return f"A length has no default: Initialize refuses 0 for {', '.join(lengths)}. " if lengths else ""
+
+
 def _configuration(block: Block) -> Iterator[str]:
     if not block.configuration_size:
         yield "None: every pose has one solution."
@@ -82,6 +96,9 @@ def _configuration(block: Block) -> Iterator[str]:
         yield from _item(f"Byte {period.byte}, turn of {period.axis} (signed): {_PERIOD}.")
     yield ""
     yield from wrap(f"{block.name}_Config sets a configuration, {block.name}_ReadConfig reads one. {_AUTOMATIC}", _WIDTH)
+    if block.periods:
+        yield ""
+        yield from wrap(_OPEN_TURN, _WIDTH)
 
 
 def _singularities(kinematics: Kinematics) -> Iterator[str]:

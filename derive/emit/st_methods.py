@@ -15,7 +15,7 @@ from derive.emit.st_contract import Contract, Parameter, Signature
 from derive.emit.st_inputs import number_of
 from derive.emit.st_names import joined, stored_name
 from derive.emit.st_program import Printed, printed
-from derive.emit.st_refusal import MISSING, REASON, Explained, Refusal
+from derive.emit.st_refusal import MISSING, REASON, TURN, Explained, Refusal
 from derive.emit.st_shared import method_name, own_names, signature_of
 from derive.kinematics import Kinematics
 from derive.program import Program, shared
@@ -116,7 +116,7 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
         yield _Source(_explained(call.signature) if name == "CartesianToAxes" else call.signature, program)
         yield from _shared(program, kinematics, contract, ready)
         if name == "CartesianToAxes":
-            yield _Source(_explained(_check_limits(contract)), kinematics.limits)
+            yield _Source(_explained(_check_limits(contract), turns=bool(block.periods)), kinematics.limits)
 
 
 def _quotable(text: str) -> str:
@@ -124,9 +124,10 @@ def _quotable(text: str) -> str:
     return text.replace("$", "$$").replace("'", "$'")
 
 
-def _explained(signature: Signature) -> Signature:
+def _explained(signature: Signature, *, turns: bool = False) -> Signature:
     """With outputs that only Diagnose reads."""
-    outputs = (Parameter("VAR_OUTPUT", REASON, "INT"), Parameter("VAR_OUTPUT", MISSING, "LREAL"))
+    outputs = [Parameter("VAR_OUTPUT", REASON, "INT"), Parameter("VAR_OUTPUT", MISSING, "LREAL")]
+    outputs += [Parameter("VAR_OUTPUT", TURN, "INT")] if turns else []
     return replace(signature, parameters=(*signature.parameters, *outputs))
 
 

@@ -11,10 +11,12 @@ from derive.diagnosis import Reasons
 from derive.emit.st_contract import Signature
 from derive.emit.st_expression import StructuredText
 from derive.emit.st_layout import conjunction, indented, wrapped
+from derive.other_turns import OtherTurn
 from derive.program import Iterate, Require, Status
 
-REASON, MISSING = "iReason", "dMissing"
-"""The outputs of a method that explains its refusals: a number, for which Diagnose has the text, and an amount."""
+REASON, MISSING, TURN = "iReason", "dMissing", "iTurn"
+"""The outputs of a method that explains its refusals: a number, for which Diagnose has the text, an amount, and the number of a
+turn that is inside."""
 
 
 @dataclass(frozen=True)
@@ -71,8 +73,31 @@ class Explained(Refusal):
             yield from conjunction("IF NOT (", [printer.print(c) for c in check.conditions], ") THEN")
             if check.missing != 0:
                 yield from indented(wrapped(f"{MISSING} := {printer.print(check.missing)};"))
-            yield from indented(self._because(check.reason, check.status))
+            yield from indented([*self._numbered(check.reason, check.turns, printer), *self.of(check.status)])
             yield "END_IF"
 
+    def _numbered(self, plain: str, turns: Sequence[tuple[OtherTurn, str]], printer: StructuredText) -> Iterator[str]:
+        """The number of the reason: of the first axis that is inside on another turn, or the plain one."""
+        if not turns:
+            yield f"{REASON} := {self._number(plain)};"
+            return
+        (turn, reason), *others = turns
+        low, high = (_one(word, ends, printer) for word, ends in (("MAX", turn.lowest), ("MIN", turn.highest)))
+        yield from wrapped(f"{TURN} := Softkin_TurnInside({printer.print(turn.axis)}, {low}, {high});")
+        yield f"IF {TURN} <> 0 THEN"
+        yield from indented([f"{REASON} := {self._number(reason)};"])
+        yield "ELSE"
+        yield from indented(list(self._numbered(plain, others, printer)))
+        yield "END_IF"
+
+    def _number(self, reason: str) -> int:
+        return self.texts.index(reason) + 1
+
     def _because(self, reason: str, status: Status) -> tuple[str, ...]:
-        return (f"{REASON} := {self.texts.index(reason) + 1};", *self.of(status))
+        return (f"{REASON} := {self._number(reason)};", *self.of(status))
+
+
+def _one(word: str, ends: Sequence[sp.Expr], printer: StructuredText) -> str:
+    """The largest or the smallest of one or more ends."""
+    texts = [printer.print(end) for end in ends]
+    return f"{word}({', '.join(texts)})" if len(texts) > 1 else texts[0]

@@ -9,6 +9,7 @@ from tests.coupling import test_structured_text as tried
 from tests.coupling.blocks import ORIENTATIONS, Carried, twins_of
 from tests.execution import test_configuration_blocks, test_initialise, values
 from tests.execution.controller import NOT_INITIALIZED
+from tests.execution.other_turns import check_other_turns
 from tests.execution.reasons import provoke
 from tests.execution.samples import Sample
 from tests.execution.statements import Statements
@@ -68,6 +69,7 @@ def _limits_and_garbage(one: tried.Twins) -> None:
             block.initialise({**one.robot.parameters, **changed})
             block.inverse((0.0, 0.0, 0.0), sample.rotation, data, sample.axes)
     _refused_by_limits(one, sample)
+    check_other_turns(one, sample)
     provoke(one, sample)
 
 

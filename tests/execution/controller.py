@@ -67,13 +67,19 @@ class Controller:
         self, position: Numbers, rows: Iterable[Numbers], configuration: Iterable[int], reference: Numbers
     ) -> tuple[str, float]:
         """Diagnose: the reason, and how much is missing."""
+        return self.explain(position, rows, configuration, reference)[:2]
+
+    def explain(
+        self, position: Numbers, rows: Iterable[Numbers], configuration: Iterable[int], reference: Numbers
+    ) -> tuple[str, float, int]:
+        """Diagnose: the reason, how much is missing, and the number of a turn that is inside."""
         reason, outputs = self.block.call_with_outputs(
             "Diagnose",
             f=values.frame(self.library, position, rows),
             aRef=values.axes(self.library, reference),
             cd=values.configuration(self.library, configuration),
         )
-        return reason, outputs["dMissing"]
+        return reason, outputs["dMissing"], outputs["iTurn"]
 
     def inverse_offset(self, point: Numbers, offset: Numbers, configuration: Iterable[int], reference: Numbers) -> Answer:
         """CartesianToAxes_Offset: all entries of the axis values."""

@@ -25,11 +25,12 @@ def provoke(one: Any, sample: Sample) -> None:
 def compare_reason(one: Any, command: Command) -> None:
     """Word for word and number by number; there is a reason where the inverse refuses, and nowhere else."""
     frame = command.position, command.rotation
-    found = one.controller.diagnose(*frame, command.configuration, command.reference)
-    status, reason, missing = one.robot.diagnose(frame, command.configuration, command.reference)
+    found = one.controller.explain(*frame, command.configuration, command.reference)
+    status, reason, missing, turn = one.robot.diagnose(frame, command.configuration, command.reference)
     assert status.softmotion == asked(one.robot.inverse, frame, command.configuration, command.reference)[0]
-    assert_same(found, (reason, missing), one, command)
+    assert_same(found, (reason, missing, turn), one, command)
     assert (reason == "") == (status.softmotion == OK)
+    assert (turn != 0) == (": this turn" in reason)
     assert missing >= 0.0
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tests.execution.controller import OK, UNREACHABLE, Controller
+from tests.execution.other_turns import check_other_turns
 from tests.execution.samples import Sample
 from tests.execution.twins import Twins
 from tests.execution.values import PROPERTIES_TYPE, meaningless
@@ -34,6 +35,12 @@ def test_every_limit_refuses_alone(twins: tuple[Twins, ...]) -> None:
                 assert status(one, sample, limits) == expected, f"{one} {sample} {limits}"
                 assert status(one, sample, limits | {"check_limits": False}) == OK
         assert chosen, name
+
+
+def test_a_turn_that_refuses_is_told_with_the_one_inside(twins: tuple[Twins, ...]) -> None:
+    one = twins[4]
+    for sample in one.regular[:3]:
+        assert check_other_turns(one, sample) or not one.robot.PERIOD_AXES
 
 
 def test_small_limits_are_limits(twins: tuple[Twins, ...]) -> None:
@@ -68,5 +75,5 @@ def status(one: Twins, sample: Sample, limits: dict[str, float]) -> str:
     position, rotation, data = controller.forward(sample.axes)[1]
     found: str = controller.inverse(position, rotation, data, sample.axes)[0]
     reason, missing = controller.diagnose(position, rotation, data, sample.axes)
-    assert (missing > 0.0) == ("limit [" in reason) == (found == UNREACHABLE)
+    assert (missing > 0.0) == ("limit" in reason) == (found == UNREACHABLE)
     return found

@@ -9,6 +9,7 @@ import pytest
 import sympy as sp
 from hypothesis import example, given
 from hypothesis import strategies as st
+from softkin._configuration import turn_inside
 from softkin._rotation import made_rotation
 
 from derive.program import Atan2, NearestOnArc, NearestPeriod, Root, Status, real
@@ -112,6 +113,33 @@ def test_period_number(axis: float) -> None:
     turn = math.floor((axis + (180.0 + 1e-9)) / 360.0)
     number = turn + 1 if turn >= 0 else turn
     assert LIBRARY.function("Softkin_PeriodNumber")(axis) == (number if abs(number) <= 127 else 0)
+
+
+@given(axis=st.floats(-5000.0, 5000.0), low=st.floats(-2000.0, 2000.0), width=st.floats(0.1, 2000.0))
+@example(181.0, -180.0, 360.0)
+@example(-180.5, -180.0, 360.0)
+@example(100.0, 185.0, 5.0)
+@example(1e5, -1e5, 1.5e5)
+@example(-1e5, -9e4, 1.5e5)
+@example(3e5, 2e5, 8e4)
+@example(-3e5, -2.8e5, 8e4)
+def test_the_turn_inside(axis: float, low: float, width: float) -> None:
+    """Of the turns that a byte can name, the one inside that is nearest to the end which the axis is beyond."""
+    high = low + width
+    if low <= axis <= high:
+        return
+    numbers = [n for n in range(-127, 128) if n != 0]
+    turns = {n: axis + 360.0 * round((_centre(n) - axis) / 360.0) for n in numbers}
+    inside = [n for n, value in turns.items() if low <= value <= high]
+    edges = ((value, edge) for n, value in turns.items() for edge in (low, high, _centre(n) - 180.0, _centre(n) + 180.0))
+    if any(abs(value - edge) < 1e-6 for value, edge in edges):
+        return  # where rounding decides
+    expected = (max(inside) if axis > high else min(inside)) if inside else 0
+    assert LIBRARY.function("Softkin_TurnInside")(axis, low, high) == turn_inside(axis, low, high) == expected
+
+
+def _centre(number: int) -> float:
+    return 360.0 * (number - 1 if number > 0 else number)
 
 
 def test_period_numbers_and_bytes() -> None:

@@ -121,15 +121,15 @@ def test_both_zero_is_no_limit(machines: tuple[Machine, ...]) -> None:
                 assert outcome(one_sided, machine, axes) is expected
 
 
-def test_a_range_of_one_turn_takes_its_value_inside(machines: tuple[Machine, ...]) -> None:
-    """Wherever the reference is; a named period still rules, and is refused where it is outside."""
+def test_a_range_of_less_than_a_turn_takes_its_value_inside(machines: tuple[Machine, ...]) -> None:
+    """Up to 350 degrees, wherever the reference is; a named period still rules, and is refused where it is outside."""
     for machine in fitting(machines):
         turning = [i for i, j in enumerate(machine.mechanism.joints) if j.multi_turn]
         axes = one_pose(machine, 5)
         positions, rotations = machine.closure.poses(axes[None])
         for i in turning:
             key = machine.mechanism.joints[i].key
-            for low, high in ((axes[i] - 10, axes[i] + 100), (axes[i] - 179, axes[i] + 179), (axes[i] - 100, axes[i] + 260)):
+            for low, high in ((axes[i] - 10, axes[i] + 100), (axes[i] - 175, axes[i] + 175), (axes[i] - 100, axes[i] + 250)):
                 robot = machine.changed(**{f"lower_{key}": low, f"upper_{key}": high})
                 for turns in (-2, 0, 1):
                     near = axes.copy()

@@ -8,6 +8,7 @@ from itertools import product
 from math import floor
 from typing import TypeAlias
 
+from softkin._scalar import nearest_period
 from softkin._types import Configuration, KinematicsError, Reals, Status
 
 AUTOMATIC, FIRST, SECOND, COINCIDE = 0, 1, 2, 3
@@ -50,6 +51,17 @@ def period(axis: float) -> int:
     turn = floor((axis + 180.0 + EDGE) / 360.0)
     number = turn + 1 if turn >= 0 else turn
     return number if -127 <= number <= 127 else 0
+
+
+def turn_inside(axis: float, lowest: float, highest: float) -> int:
+    """The number of the turn on which an axis that is beyond its limits (degrees) would be inside.
+
+    Of several the turn nearest to the end that it is beyond; 0 where there is none, or none that a byte can name.
+    """
+    turns = floor((highest - axis) / 360.0) if axis > highest else -floor((axis - lowest) / 360.0)
+    number = period(min(max(axis + 360.0 * turns, -360.0 * 127), 360.0 * 126))
+    inside = nearest_period(axis, 360.0 * number - 360.0 if number > 0 else 360.0 * number)
+    return number if lowest <= inside <= highest else 0
 
 
 def squared_distance(axes: Reals, reference: Reals, counted: tuple[int, ...]) -> float:

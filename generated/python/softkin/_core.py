@@ -184,9 +184,12 @@ class Mechanism(ABC):
         frame: position (3) and rotation (3 rows of 3), a `Frame` or any pair of sequences. A rotation to few digits, as
         from single precision, is repaired: the direction of z is kept. Of R^T R - I no entry may be beyond 0.0001.
         configuration: see `CONFIGURATION`; without one, `DEFAULT_CONFIGURATION`. Where it leaves a branch open,
-        the nearest to the reference is taken; where it leaves a period open, the value nearest to the reference.
+        the nearest to the reference is taken. Where it leaves a period open, an axis whose limits are at most
+        350 degrees apart takes its one value inside them; any other the value nearest to the reference. Limits
+        refuse then, they never choose again: for a move from point to point name the period of an axis with a wider range.
         reference: one value an axis, the present axis values as a rule; without one, zeros.
-        Raises BAD_INPUT, UNREACHABLE (out of reach or beyond a limit), or IMPOSSIBLE.
+        Raises BAD_INPUT, UNREACHABLE (out of reach, or beyond a limit: then the message says whether another turn is
+        inside), or IMPOSSIBLE.
         """
         position, rows = self._pose(frame)
         near = self._near(reference)
@@ -195,13 +198,13 @@ class Mechanism(ABC):
         axes = self._choose(lambda signs: self._branch(position, rotation, signs, turns, near), branches, near)
         if isinstance(axes, Status):
             self._fail("inverse", axes, position=position, rotation=rows, reference=near)
-        return self._limited("inverse", axes)
+        return self._limited("inverse", axes, self._beyond)
 
     def inverse_all(self, frame: FrameLike, reference: Numbers | None = None) -> Sequence[Solution]:
         """Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
 
-        Periods are the nearest to the reference. No slot is left out: one without axes has the status instead,
-        limits included. Raises BAD_INPUT only for what has not the form of a frame. The result is as a tuple of them.
+        Periods are open, as in `inverse`. No slot is left out: one without axes has the status instead, limits
+        included; why, and whether another turn is inside, says `diagnose` for the branches of its configuration. Raises BAD_INPUT only for what has not the form of a frame. The result is as a tuple of them.
         """
         position, rows = self._pose(frame)
         near, rotation = self._near(reference), self._made(rows)
@@ -232,7 +235,9 @@ class Mechanism(ABC):
     ) -> Diagnosis:
         """Why `inverse` refuses these arguments: which quantity, and how much is missing.
 
-        Where the configuration leaves branches open and none has a solution, it speaks of the first of them.
+        Where the configuration leaves branches open and none has a solution, it speaks of the first of them. Where the
+        turn of an axis is beyond its limits and another one is not, `turn` is the number of that one: named in the period
+        byte, it is answered if nothing else refuses.
         """
         position, rows = self._pose(frame)
         near = self._near(reference)
@@ -411,12 +416,18 @@ class Mechanism(ABC):
     def _limit_status(self, axes: Reals) -> Status:
         return self._limits(axes) if self.checks_limits else Status.OK
 
-    def _limited(self, call: str, axes: Reals) -> Reals:
+    def _limited(self, call: str, axes: Reals, why: Callable[[Reals], str] = lambda _: "") -> Reals:
         """The axes, if they are inside their limits."""
         status = self._limit_status(axes)
         if status is not Status.OK:
-            raise KinematicsError(status, f"{self.NAME}.{call}: axes {axes} are beyond the limits")
+            raise KinematicsError(status, f"{self.NAME}.{call}: axes {axes} are beyond the limits{why(axes)}")
         return axes
+
+    def _beyond(self, axes: Reals) -> str:
+        """Which limit, and the turn that is inside where there is one."""
+        _, limits = self._explained()
+        found = limits(axes)
+        return f": {found.reason}" + (f", which is turn {found.turn}" if found.turn else "")
 
     def _fail(self, call: str, status: Status, **inputs: object) -> NoReturn:
         """Raise the error of a call without an answer."""

@@ -25,7 +25,7 @@ class SearchedInverse(Mechanism):
         """Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
 
         A branch may have several solutions: `axes` is that nearest to the reference along the joint that is searched,
-        `others` has the rest, by rank. Those beyond the limits are left out; periods are the nearest to the reference.
+        `others` has the rest, by rank. Those beyond the limits are left out; periods are open, as in `inverse`.
         A slot without axes has the status instead. A search is no proof: see the module for how many it misses.
         Raises BAD_INPUT only for what has not the form of a frame.
         """

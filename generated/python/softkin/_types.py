@@ -93,6 +93,8 @@ class Diagnosis(NamedTuple):
     """What refused and why, with the name of the quantity."""
     missing: float
     """How much that quantity is short, in its own unit; 0 where that means nothing."""
+    turn: int = 0
+    """Where the reason is the turn of an axis: the number of one that is inside; 0 where there is none."""
 
 
 class Singularity(NamedTuple):
@@ -159,7 +161,7 @@ class Parameter:
 class ConfigurationByte:
     """A byte of the configuration.
 
-    A branch: 1 or 2, 0 automatic, 3 where both coincide. A period: the signed number of the turn, 0 nearest.
+    A branch: 1 or 2, 0 automatic, 3 where both coincide. A period: the signed number of the turn, 0 open: see `Mechanism.inverse`.
     """
 
     name: str

@@ -13,9 +13,9 @@ Axes:
 
 Configuration:
     wrist: 1 = upright, 2 = flipped, 0 = automatic, 3 = both coincide
-    period of A4: signed number of the turn, 0 = nearest to the reference
-    period of A5: signed number of the turn, 0 = nearest to the reference
-    period of A6: signed number of the turn, 0 = nearest to the reference
+    period of A4: signed number of the turn, 0 = open: see `inverse`
+    period of A5: signed number of the turn, 0 = open: see `inverse`
+    period of A6: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     a4_parallel_a6: type 1
@@ -350,8 +350,12 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
         lowest_a4 = -1e12 if unlimited_a4 > 0.0 else effective_lower_a4 - tolerance_a4
         highest_a4 = 1e12 if unlimited_a4 > 0.0 else effective_upper_a4 + tolerance_a4
-        # range of one turn at most
-        single_a4 = 1.0 if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a4 = (
+            1.0
+            if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
+            else 0.0
+        )
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
             raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
@@ -361,8 +365,12 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
         lowest_a5 = -1e12 if unlimited_a5 > 0.0 else effective_lower_a5 - tolerance_a5
         highest_a5 = 1e12 if unlimited_a5 > 0.0 else effective_upper_a5 + tolerance_a5
-        # range of one turn at most
-        single_a5 = 1.0 if (unlimited_a5 <= 0.0) and (effective_upper_a5 - effective_lower_a5 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a5 = (
+            1.0
+            if (unlimited_a5 <= 0.0) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
+            else 0.0
+        )
         mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
         if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
             raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
@@ -372,8 +380,12 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
         lowest_a6 = -1e12 if unlimited_a6 > 0.0 else effective_lower_a6 - tolerance_a6
         highest_a6 = 1e12 if unlimited_a6 > 0.0 else effective_upper_a6 + tolerance_a6
-        # range of one turn at most
-        single_a6 = 1.0 if (unlimited_a6 <= 0.0) and (effective_upper_a6 - effective_lower_a6 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a6 = (
+            1.0
+            if (unlimited_a6 <= 0.0) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
+            else 0.0
+        )
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = 1.0  # a length of the machine
         return Constants(
@@ -560,15 +572,6 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
         lowest_a4 = k.lowest_a4
         lowest_a5 = k.lowest_a5
         lowest_a6 = k.lowest_a6
-        # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
-        # limits of A2
-        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
-            return Status.UNREACHABLE
-        # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
         # limits of A4
         if not (axis_a4 >= lowest_a4 and axis_a4 <= highest_a4):
             return Status.UNREACHABLE
@@ -577,6 +580,15 @@ class Ac6TXTYTZRYRXRZ(Mechanism):
             return Status.UNREACHABLE
         # limits of A6
         if not (axis_a6 >= lowest_a6 and axis_a6 <= highest_a6):
+            return Status.UNREACHABLE
+        # limits of A1
+        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
+            return Status.UNREACHABLE
+        # limits of A2
+        if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
+            return Status.UNREACHABLE
+        # limits of A3
+        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
             return Status.UNREACHABLE
         return Status.OK
 

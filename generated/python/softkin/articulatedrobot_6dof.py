@@ -15,12 +15,12 @@ Configuration:
     arm: 1 = front, 2 = back, 0 = automatic, 3 = both coincide
     elbow: 1 = down, 2 = up, 0 = automatic, 3 = both coincide
     hand: 1 = down, 2 = up, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = nearest to the reference
-    period of A2: signed number of the turn, 0 = nearest to the reference
-    period of A3: signed number of the turn, 0 = nearest to the reference
-    period of A4: signed number of the turn, 0 = nearest to the reference
-    period of A5: signed number of the turn, 0 = nearest to the reference
-    period of A6: signed number of the turn, 0 = nearest to the reference
+    period of A1: signed number of the turn, 0 = open: see `inverse`
+    period of A2: signed number of the turn, 0 = open: see `inverse`
+    period of A3: signed number of the turn, 0 = open: see `inverse`
+    period of A4: signed number of the turn, 0 = open: see `inverse`
+    period of A5: signed number of the turn, 0 = open: see `inverse`
+    period of A6: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     wrist_on_axis_1: type 1
@@ -379,8 +379,12 @@ class ArticulatedRobot6DOF(Mechanism):
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
-        # range of one turn at most
-        single_a1 = 1.0 if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a1 = (
+            1.0
+            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
+            else 0.0
+        )
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
@@ -390,8 +394,12 @@ class ArticulatedRobot6DOF(Mechanism):
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
-        # range of one turn at most
-        single_a2 = 1.0 if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a2 = (
+            1.0
+            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
+            else 0.0
+        )
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
@@ -401,8 +409,12 @@ class ArticulatedRobot6DOF(Mechanism):
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
-        # range of one turn at most
-        single_a3 = 1.0 if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a3 = (
+            1.0
+            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
+            else 0.0
+        )
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
@@ -412,8 +424,12 @@ class ArticulatedRobot6DOF(Mechanism):
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
         lowest_a4 = -1e12 if unlimited_a4 > 0.0 else effective_lower_a4 - tolerance_a4
         highest_a4 = 1e12 if unlimited_a4 > 0.0 else effective_upper_a4 + tolerance_a4
-        # range of one turn at most
-        single_a4 = 1.0 if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a4 = (
+            1.0
+            if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
+            else 0.0
+        )
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         if not ((lower_a5 < upper_a5) or (abs(lower_a5) + abs(upper_a5) <= 0.0)):
             raise self._refusal("lower_a5 below upper_a5, or both 0", lower_a5=lower_a5, upper_a5=upper_a5)
@@ -423,8 +439,12 @@ class ArticulatedRobot6DOF(Mechanism):
         tolerance_a5 = 1e-9 + 1e-9*abs(effective_lower_a5) + 1e-9*abs(effective_upper_a5)
         lowest_a5 = -1e12 if unlimited_a5 > 0.0 else effective_lower_a5 - tolerance_a5
         highest_a5 = 1e12 if unlimited_a5 > 0.0 else effective_upper_a5 + tolerance_a5
-        # range of one turn at most
-        single_a5 = 1.0 if (unlimited_a5 <= 0.0) and (effective_upper_a5 - effective_lower_a5 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a5 = (
+            1.0
+            if (unlimited_a5 <= 0.0) and (effective_upper_a5 - effective_lower_a5 <= 350.0 + tolerance_a5)
+            else 0.0
+        )
         mid_a5 = 0.5*effective_lower_a5 + 0.5*effective_upper_a5
         if not ((lower_a6 < upper_a6) or (abs(lower_a6) + abs(upper_a6) <= 0.0)):
             raise self._refusal("lower_a6 below upper_a6, or both 0", lower_a6=lower_a6, upper_a6=upper_a6)
@@ -434,8 +454,12 @@ class ArticulatedRobot6DOF(Mechanism):
         tolerance_a6 = 1e-9 + 1e-9*abs(effective_lower_a6) + 1e-9*abs(effective_upper_a6)
         lowest_a6 = -1e12 if unlimited_a6 > 0.0 else effective_lower_a6 - tolerance_a6
         highest_a6 = 1e12 if unlimited_a6 > 0.0 else effective_upper_a6 + tolerance_a6
-        # range of one turn at most
-        single_a6 = 1.0 if (unlimited_a6 <= 0.0) and (effective_upper_a6 - effective_lower_a6 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a6 = (
+            1.0
+            if (unlimited_a6 <= 0.0) and (effective_upper_a6 - effective_lower_a6 <= 350.0 + tolerance_a6)
+            else 0.0
+        )
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = a1 + a2 + a3 + d4  # a length of the machine
         effective_q3 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns

@@ -7,7 +7,7 @@ Axes:
     C (rotary, deg): Turn about the flange's Z
 
 Configuration:
-    period of C: signed number of the turn, 0 = nearest to the reference
+    period of C: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     none
@@ -131,8 +131,12 @@ class CAxis(OrientationKinematics, TwistChoice):
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
         lowest_c = -1e12 if unlimited_c > 0.0 else effective_lower_c - tolerance_c
         highest_c = 1e12 if unlimited_c > 0.0 else effective_upper_c + tolerance_c
-        # range of one turn at most
-        single_c = 1.0 if (unlimited_c <= 0.0) and (effective_upper_c - effective_lower_c <= 360.0) else 0.0
+        # one value inside the limits
+        single_c = (
+            1.0
+            if (unlimited_c <= 0.0) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
+            else 0.0
+        )
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
         machine_scale = 1.0  # a length of the machine
         return Constants(

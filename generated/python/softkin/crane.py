@@ -9,7 +9,7 @@ Axes:
     Phi (rotary, deg): Polar angle, from +Z
 
 Configuration:
-    period of Theta: signed number of the turn, 0 = nearest to the reference
+    period of Theta: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     free_theta: type 1
@@ -100,12 +100,14 @@ class Crane(OffsetKinematics):
             low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="lower_r", kind="distance", unit="u", meaning="R: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="lower_r", kind="distance", unit="u",
+            meaning="R: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="upper_r", kind="distance", unit="u", meaning="R: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="upper_r", kind="distance", unit="u",
+            meaning="R: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
             name="lower_theta", kind="angle", unit="deg",
@@ -118,12 +120,14 @@ class Crane(OffsetKinematics):
             low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="lower_phi", kind="angle", unit="deg", meaning="Phi: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="lower_phi", kind="angle", unit="deg",
+            meaning="Phi: lower limit of the axis, both 0: joint value 0 .. 180", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="upper_phi", kind="angle", unit="deg", meaning="Phi: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="upper_phi", kind="angle", unit="deg",
+            meaning="Phi: upper limit of the axis, both 0: joint value 0 .. 180", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
             name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
@@ -153,12 +157,12 @@ class Crane(OffsetKinematics):
         offset_r: R: axis value at the kinematic zero position [u]
         offset_theta: Theta: axis value at the kinematic zero position [deg]
         offset_phi: Phi: axis value at the kinematic zero position [deg]
-        lower_r: R: lower limit of the axis, both 0: no limit [u]
-        upper_r: R: upper limit of the axis, both 0: no limit [u]
+        lower_r: R: lower limit of the axis, both 0: joint value 0 or more [u]
+        upper_r: R: upper limit of the axis, both 0: joint value 0 or more [u]
         lower_theta: Theta: lower limit of the axis, both 0: no limit [deg]
         upper_theta: Theta: upper limit of the axis, both 0: no limit [deg]
-        lower_phi: Phi: lower limit of the axis, both 0: no limit [deg]
-        upper_phi: Phi: upper limit of the axis, both 0: no limit [deg]
+        lower_phi: Phi: lower limit of the axis, both 0: joint value 0 .. 180 [deg]
+        upper_phi: Phi: upper limit of the axis, both 0: joint value 0 .. 180 [deg]
         check_limits: inverse kinematics tests the limits
         """
         values = self._accept(
@@ -188,9 +192,9 @@ class Crane(OffsetKinematics):
         if not (offset_phi >= -1e9 and offset_phi <= 1e9):
             raise self._refusal("offset_phi: Phi: axis value at the kinematic zero position", offset_phi=offset_phi)
         if not (lower_r >= -1e9 and lower_r <= 1e9):
-            raise self._refusal("lower_r: R: lower limit of the axis, both 0: no limit", lower_r=lower_r)
+            raise self._refusal("lower_r: R: lower limit of the axis, both 0: joint value 0 or more", lower_r=lower_r)
         if not (upper_r >= -1e9 and upper_r <= 1e9):
-            raise self._refusal("upper_r: R: upper limit of the axis, both 0: no limit", upper_r=upper_r)
+            raise self._refusal("upper_r: R: upper limit of the axis, both 0: joint value 0 or more", upper_r=upper_r)
         if not (lower_theta >= -1e9 and lower_theta <= 1e9):
             raise self._refusal(
                 "lower_theta: Theta: lower limit of the axis, both 0: no limit", lower_theta=lower_theta,
@@ -200,9 +204,13 @@ class Crane(OffsetKinematics):
                 "upper_theta: Theta: upper limit of the axis, both 0: no limit", upper_theta=upper_theta,
             )
         if not (lower_phi >= -1e9 and lower_phi <= 1e9):
-            raise self._refusal("lower_phi: Phi: lower limit of the axis, both 0: no limit", lower_phi=lower_phi)
+            raise self._refusal(
+                "lower_phi: Phi: lower limit of the axis, both 0: joint value 0 .. 180", lower_phi=lower_phi,
+            )
         if not (upper_phi >= -1e9 and upper_phi <= 1e9):
-            raise self._refusal("upper_phi: Phi: upper limit of the axis, both 0: no limit", upper_phi=upper_phi)
+            raise self._refusal(
+                "upper_phi: Phi: upper limit of the axis, both 0: joint value 0 .. 180", upper_phi=upper_phi,
+            )
         if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
             raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)
         unlimited_r = 0.0  # r: no limit
@@ -221,10 +229,10 @@ class Crane(OffsetKinematics):
         tolerance_theta = 1e-9 + 1e-9*abs(effective_lower_theta) + 1e-9*abs(effective_upper_theta)
         lowest_theta = -1e12 if unlimited_theta > 0.0 else effective_lower_theta - tolerance_theta
         highest_theta = 1e12 if unlimited_theta > 0.0 else effective_upper_theta + tolerance_theta
-        # range of one turn at most
+        # one value inside the limits
         single_theta = (
             1.0
-            if (unlimited_theta <= 0.0) and (effective_upper_theta - effective_lower_theta <= 360.0)
+            if (unlimited_theta <= 0.0) and (effective_upper_theta - effective_lower_theta <= 350.0 + tolerance_theta)
             else 0.0
         )
         mid_theta = 0.5*effective_lower_theta + 0.5*effective_upper_theta
@@ -353,11 +361,11 @@ class Crane(OffsetKinematics):
         lowest_phi = k.lowest_phi
         lowest_r = k.lowest_r
         lowest_theta = k.lowest_theta
-        # limits of R
-        if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return Status.UNREACHABLE
         # limits of Theta
         if not (axis_theta >= lowest_theta and axis_theta <= highest_theta):
+            return Status.UNREACHABLE
+        # limits of R
+        if not (axis_r >= lowest_r and axis_r <= highest_r):
             return Status.UNREACHABLE
         # limits of Phi
         if not (axis_phi >= lowest_phi and axis_phi <= highest_phi):

@@ -11,7 +11,7 @@ Axes:
     R (rotary, deg): Knife about Z
 
 Configuration:
-    period of R: signed number of the turn, 0 = nearest to the reference
+    period of R: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     none
@@ -268,8 +268,12 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         tolerance_r = 1e-9 + 1e-9*abs(effective_lower_r) + 1e-9*abs(effective_upper_r)
         lowest_r = -1e12 if unlimited_r > 0.0 else effective_lower_r - tolerance_r
         highest_r = 1e12 if unlimited_r > 0.0 else effective_upper_r + tolerance_r
-        # range of one turn at most
-        single_r = 1.0 if (unlimited_r <= 0.0) and (effective_upper_r - effective_lower_r <= 360.0) else 0.0
+        # one value inside the limits
+        single_r = (
+            1.0
+            if (unlimited_r <= 0.0) and (effective_upper_r - effective_lower_r <= 350.0 + tolerance_r)
+            else 0.0
+        )
         mid_r = 0.5*effective_lower_r + 0.5*effective_upper_r
         machine_scale = 1.0  # a length of the machine
         return Constants(
@@ -368,6 +372,9 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
         lowest_x = k.lowest_x
         lowest_y = k.lowest_y
         lowest_z = k.lowest_z
+        # limits of R
+        if not (axis_r >= lowest_r and axis_r <= highest_r):
+            return Status.UNREACHABLE
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
             return Status.UNREACHABLE
@@ -376,9 +383,6 @@ class GantryCutter3(OffsetKinematics, TwistChoice):
             return Status.UNREACHABLE
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return Status.UNREACHABLE
-        # limits of R
-        if not (axis_r >= lowest_r and axis_r <= highest_r):
             return Status.UNREACHABLE
         return Status.OK
 

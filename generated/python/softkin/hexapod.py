@@ -457,52 +457,64 @@ class Hexapod(IterativeForward):
             low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="lower_l1", kind="distance", unit="u", meaning="L1: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="lower_l1", kind="distance", unit="u",
+            meaning="L1: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="upper_l1", kind="distance", unit="u", meaning="L1: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="upper_l1", kind="distance", unit="u",
+            meaning="L1: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="lower_l2", kind="distance", unit="u", meaning="L2: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="lower_l2", kind="distance", unit="u",
+            meaning="L2: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="upper_l2", kind="distance", unit="u", meaning="L2: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="upper_l2", kind="distance", unit="u",
+            meaning="L2: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="lower_l3", kind="distance", unit="u", meaning="L3: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="lower_l3", kind="distance", unit="u",
+            meaning="L3: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="upper_l3", kind="distance", unit="u", meaning="L3: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="upper_l3", kind="distance", unit="u",
+            meaning="L3: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="lower_l4", kind="distance", unit="u", meaning="L4: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="lower_l4", kind="distance", unit="u",
+            meaning="L4: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="upper_l4", kind="distance", unit="u", meaning="L4: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="upper_l4", kind="distance", unit="u",
+            meaning="L4: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="lower_l5", kind="distance", unit="u", meaning="L5: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="lower_l5", kind="distance", unit="u",
+            meaning="L5: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="upper_l5", kind="distance", unit="u", meaning="L5: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="upper_l5", kind="distance", unit="u",
+            meaning="L5: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="lower_l6", kind="distance", unit="u", meaning="L6: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="lower_l6", kind="distance", unit="u",
+            meaning="L6: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="upper_l6", kind="distance", unit="u", meaning="L6: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="upper_l6", kind="distance", unit="u",
+            meaning="L6: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
             name="min_type2_margin", kind="ratio", unit="1",
@@ -594,18 +606,18 @@ class Hexapod(IterativeForward):
         offset_l4: L4: axis value at the kinematic zero position [u]
         offset_l5: L5: axis value at the kinematic zero position [u]
         offset_l6: L6: axis value at the kinematic zero position [u]
-        lower_l1: L1: lower limit of the axis, both 0: no limit [u]
-        upper_l1: L1: upper limit of the axis, both 0: no limit [u]
-        lower_l2: L2: lower limit of the axis, both 0: no limit [u]
-        upper_l2: L2: upper limit of the axis, both 0: no limit [u]
-        lower_l3: L3: lower limit of the axis, both 0: no limit [u]
-        upper_l3: L3: upper limit of the axis, both 0: no limit [u]
-        lower_l4: L4: lower limit of the axis, both 0: no limit [u]
-        upper_l4: L4: upper limit of the axis, both 0: no limit [u]
-        lower_l5: L5: lower limit of the axis, both 0: no limit [u]
-        upper_l5: L5: upper limit of the axis, both 0: no limit [u]
-        lower_l6: L6: lower limit of the axis, both 0: no limit [u]
-        upper_l6: L6: upper limit of the axis, both 0: no limit [u]
+        lower_l1: L1: lower limit of the axis, both 0: joint value 0 or more [u]
+        upper_l1: L1: upper limit of the axis, both 0: joint value 0 or more [u]
+        lower_l2: L2: lower limit of the axis, both 0: joint value 0 or more [u]
+        upper_l2: L2: upper limit of the axis, both 0: joint value 0 or more [u]
+        lower_l3: L3: lower limit of the axis, both 0: joint value 0 or more [u]
+        upper_l3: L3: upper limit of the axis, both 0: joint value 0 or more [u]
+        lower_l4: L4: lower limit of the axis, both 0: joint value 0 or more [u]
+        upper_l4: L4: upper limit of the axis, both 0: joint value 0 or more [u]
+        lower_l5: L5: lower limit of the axis, both 0: joint value 0 or more [u]
+        upper_l5: L5: upper limit of the axis, both 0: joint value 0 or more [u]
+        lower_l6: L6: lower limit of the axis, both 0: joint value 0 or more [u]
+        upper_l6: L6: upper limit of the axis, both 0: joint value 0 or more [u]
         min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off [1]
         check_limits: inverse kinematics tests the limits
         """
@@ -807,29 +819,53 @@ class Hexapod(IterativeForward):
         if not (offset_l6 >= -1e9 and offset_l6 <= 1e9):
             raise self._refusal("offset_l6: L6: axis value at the kinematic zero position", offset_l6=offset_l6)
         if not (lower_l1 >= -1e9 and lower_l1 <= 1e9):
-            raise self._refusal("lower_l1: L1: lower limit of the axis, both 0: no limit", lower_l1=lower_l1)
+            raise self._refusal(
+                "lower_l1: L1: lower limit of the axis, both 0: joint value 0 or more", lower_l1=lower_l1,
+            )
         if not (upper_l1 >= -1e9 and upper_l1 <= 1e9):
-            raise self._refusal("upper_l1: L1: upper limit of the axis, both 0: no limit", upper_l1=upper_l1)
+            raise self._refusal(
+                "upper_l1: L1: upper limit of the axis, both 0: joint value 0 or more", upper_l1=upper_l1,
+            )
         if not (lower_l2 >= -1e9 and lower_l2 <= 1e9):
-            raise self._refusal("lower_l2: L2: lower limit of the axis, both 0: no limit", lower_l2=lower_l2)
+            raise self._refusal(
+                "lower_l2: L2: lower limit of the axis, both 0: joint value 0 or more", lower_l2=lower_l2,
+            )
         if not (upper_l2 >= -1e9 and upper_l2 <= 1e9):
-            raise self._refusal("upper_l2: L2: upper limit of the axis, both 0: no limit", upper_l2=upper_l2)
+            raise self._refusal(
+                "upper_l2: L2: upper limit of the axis, both 0: joint value 0 or more", upper_l2=upper_l2,
+            )
         if not (lower_l3 >= -1e9 and lower_l3 <= 1e9):
-            raise self._refusal("lower_l3: L3: lower limit of the axis, both 0: no limit", lower_l3=lower_l3)
+            raise self._refusal(
+                "lower_l3: L3: lower limit of the axis, both 0: joint value 0 or more", lower_l3=lower_l3,
+            )
         if not (upper_l3 >= -1e9 and upper_l3 <= 1e9):
-            raise self._refusal("upper_l3: L3: upper limit of the axis, both 0: no limit", upper_l3=upper_l3)
+            raise self._refusal(
+                "upper_l3: L3: upper limit of the axis, both 0: joint value 0 or more", upper_l3=upper_l3,
+            )
         if not (lower_l4 >= -1e9 and lower_l4 <= 1e9):
-            raise self._refusal("lower_l4: L4: lower limit of the axis, both 0: no limit", lower_l4=lower_l4)
+            raise self._refusal(
+                "lower_l4: L4: lower limit of the axis, both 0: joint value 0 or more", lower_l4=lower_l4,
+            )
         if not (upper_l4 >= -1e9 and upper_l4 <= 1e9):
-            raise self._refusal("upper_l4: L4: upper limit of the axis, both 0: no limit", upper_l4=upper_l4)
+            raise self._refusal(
+                "upper_l4: L4: upper limit of the axis, both 0: joint value 0 or more", upper_l4=upper_l4,
+            )
         if not (lower_l5 >= -1e9 and lower_l5 <= 1e9):
-            raise self._refusal("lower_l5: L5: lower limit of the axis, both 0: no limit", lower_l5=lower_l5)
+            raise self._refusal(
+                "lower_l5: L5: lower limit of the axis, both 0: joint value 0 or more", lower_l5=lower_l5,
+            )
         if not (upper_l5 >= -1e9 and upper_l5 <= 1e9):
-            raise self._refusal("upper_l5: L5: upper limit of the axis, both 0: no limit", upper_l5=upper_l5)
+            raise self._refusal(
+                "upper_l5: L5: upper limit of the axis, both 0: joint value 0 or more", upper_l5=upper_l5,
+            )
         if not (lower_l6 >= -1e9 and lower_l6 <= 1e9):
-            raise self._refusal("lower_l6: L6: lower limit of the axis, both 0: no limit", lower_l6=lower_l6)
+            raise self._refusal(
+                "lower_l6: L6: lower limit of the axis, both 0: joint value 0 or more", lower_l6=lower_l6,
+            )
         if not (upper_l6 >= -1e9 and upper_l6 <= 1e9):
-            raise self._refusal("upper_l6: L6: upper limit of the axis, both 0: no limit", upper_l6=upper_l6)
+            raise self._refusal(
+                "upper_l6: L6: upper limit of the axis, both 0: joint value 0 or more", upper_l6=upper_l6,
+            )
         if not (min_type2_margin >= 0.0 and min_type2_margin <= 1.0):
             raise self._refusal(
                 "min_type2_margin: least distance from a type 2 singularity, a number without a unit; 0: off",

@@ -13,8 +13,8 @@ Axes:
 
 Configuration:
     roll: 1 = positive, 2 = negative, 0 = automatic, 3 = both coincide
-    period of A: signed number of the turn, 0 = nearest to the reference
-    period of B: signed number of the turn, 0 = nearest to the reference
+    period of A: signed number of the turn, 0 = open: see `inverse`
+    period of B: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     tool_along_a: type 1
@@ -318,8 +318,12 @@ class Kin5Axes(Mechanism):
         tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
         lowest_a = -1e12 if unlimited_a > 0.0 else effective_lower_a - tolerance_a
         highest_a = 1e12 if unlimited_a > 0.0 else effective_upper_a + tolerance_a
-        # range of one turn at most
-        single_a = 1.0 if (unlimited_a <= 0.0) and (effective_upper_a - effective_lower_a <= 360.0) else 0.0
+        # one value inside the limits
+        single_a = (
+            1.0
+            if (unlimited_a <= 0.0) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
+            else 0.0
+        )
         mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
         if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
             raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
@@ -329,8 +333,12 @@ class Kin5Axes(Mechanism):
         tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
         lowest_b = -1e12 if unlimited_b > 0.0 else effective_lower_b - tolerance_b
         highest_b = 1e12 if unlimited_b > 0.0 else effective_upper_b + tolerance_b
-        # range of one turn at most
-        single_b = 1.0 if (unlimited_b <= 0.0) and (effective_upper_b - effective_lower_b <= 360.0) else 0.0
+        # one value inside the limits
+        single_b = (
+            1.0
+            if (unlimited_b <= 0.0) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
+            else 0.0
+        )
         mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
         machine_scale = 1.0  # a length of the machine
         return Constants(
@@ -480,6 +488,12 @@ class Kin5Axes(Mechanism):
         lowest_x = k.lowest_x
         lowest_y = k.lowest_y
         lowest_z = k.lowest_z
+        # limits of A
+        if not (axis_a >= lowest_a and axis_a <= highest_a):
+            return Status.UNREACHABLE
+        # limits of B
+        if not (axis_b >= lowest_b and axis_b <= highest_b):
+            return Status.UNREACHABLE
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
             return Status.UNREACHABLE
@@ -488,12 +502,6 @@ class Kin5Axes(Mechanism):
             return Status.UNREACHABLE
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return Status.UNREACHABLE
-        # limits of A
-        if not (axis_a >= lowest_a and axis_a <= highest_a):
-            return Status.UNREACHABLE
-        # limits of B
-        if not (axis_b >= lowest_b and axis_b <= highest_b):
             return Status.UNREACHABLE
         return Status.OK
 

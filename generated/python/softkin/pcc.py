@@ -10,8 +10,8 @@ Axes:
 
 Configuration:
     elbow: 1 = right, 2 = left, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = nearest to the reference
-    period of A2: signed number of the turn, 0 = nearest to the reference
+    period of A1: signed number of the turn, 0 = open: see `inverse`
+    period of A2: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     elbow: type 1
@@ -228,8 +228,12 @@ class PCC(OffsetKinematics):
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
-        # range of one turn at most
-        single_a1 = 1.0 if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a1 = (
+            1.0
+            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
+            else 0.0
+        )
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
@@ -239,8 +243,12 @@ class PCC(OffsetKinematics):
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
-        # range of one turn at most
-        single_a2 = 1.0 if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a2 = (
+            1.0
+            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
+            else 0.0
+        )
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_elbow < upper_elbow) or (abs(lower_elbow) + abs(upper_elbow) <= 0.0)):
             raise self._refusal(

@@ -8,7 +8,7 @@ Axes:
     R (linear, u): Radius, never negative
 
 Configuration:
-    period of C: signed number of the turn, 0 = nearest to the reference
+    period of C: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     free_c: type 1
@@ -95,12 +95,14 @@ class Polar(Mechanism):
             low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="lower_r", kind="distance", unit="u", meaning="R: lower limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="lower_r", kind="distance", unit="u",
+            meaning="R: lower limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="upper_r", kind="distance", unit="u", meaning="R: upper limit of the axis, both 0: no limit",
-            low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
+            name="upper_r", kind="distance", unit="u",
+            meaning="R: upper limit of the axis, both 0: joint value 0 or more", low=-1000000000.0,
+            high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
             name="check_limits", kind="flag", unit="", meaning="inverse kinematics tests the limits", low=0.0,
@@ -130,8 +132,8 @@ class Polar(Mechanism):
         offset_r: R: axis value at the kinematic zero position [u]
         lower_c: C: lower limit of the axis, both 0: no limit [deg]
         upper_c: C: upper limit of the axis, both 0: no limit [deg]
-        lower_r: R: lower limit of the axis, both 0: no limit [u]
-        upper_r: R: upper limit of the axis, both 0: no limit [u]
+        lower_r: R: lower limit of the axis, both 0: joint value 0 or more [u]
+        upper_r: R: upper limit of the axis, both 0: joint value 0 or more [u]
         check_limits: inverse kinematics tests the limits
         """
         values = self._accept(offset_c, offset_r, lower_c, upper_c, lower_r, upper_r, check_limits)
@@ -155,9 +157,9 @@ class Polar(Mechanism):
         if not (upper_c >= -1e9 and upper_c <= 1e9):
             raise self._refusal("upper_c: C: upper limit of the axis, both 0: no limit", upper_c=upper_c)
         if not (lower_r >= -1e9 and lower_r <= 1e9):
-            raise self._refusal("lower_r: R: lower limit of the axis, both 0: no limit", lower_r=lower_r)
+            raise self._refusal("lower_r: R: lower limit of the axis, both 0: joint value 0 or more", lower_r=lower_r)
         if not (upper_r >= -1e9 and upper_r <= 1e9):
-            raise self._refusal("upper_r: R: upper limit of the axis, both 0: no limit", upper_r=upper_r)
+            raise self._refusal("upper_r: R: upper limit of the axis, both 0: joint value 0 or more", upper_r=upper_r)
         if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
             raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
         unlimited_c = 1.0 if abs(lower_c) + abs(upper_c) <= 0.0 else 0.0  # c: no limit
@@ -166,8 +168,12 @@ class Polar(Mechanism):
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
         lowest_c = -1e12 if unlimited_c > 0.0 else effective_lower_c - tolerance_c
         highest_c = 1e12 if unlimited_c > 0.0 else effective_upper_c + tolerance_c
-        # range of one turn at most
-        single_c = 1.0 if (unlimited_c <= 0.0) and (effective_upper_c - effective_lower_c <= 360.0) else 0.0
+        # one value inside the limits
+        single_c = (
+            1.0
+            if (unlimited_c <= 0.0) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
+            else 0.0
+        )
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
         if not ((lower_r < upper_r) or (abs(lower_r) + abs(upper_r) <= 0.0)):
             raise self._refusal("lower_r below upper_r, or both 0", lower_r=lower_r, upper_r=upper_r)

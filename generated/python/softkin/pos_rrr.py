@@ -11,9 +11,9 @@ Axes:
 Configuration:
     arm: 1 = front, 2 = back, 0 = automatic, 3 = both coincide
     elbow: 1 = down, 2 = up, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = nearest to the reference
-    period of A2: signed number of the turn, 0 = nearest to the reference
-    period of A3: signed number of the turn, 0 = nearest to the reference
+    period of A1: signed number of the turn, 0 = open: see `inverse`
+    period of A2: signed number of the turn, 0 = open: see `inverse`
+    period of A3: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     point_on_axis_1: type 1
@@ -265,8 +265,12 @@ class PosRRR(OffsetKinematics):
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
-        # range of one turn at most
-        single_a1 = 1.0 if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a1 = (
+            1.0
+            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
+            else 0.0
+        )
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
@@ -276,8 +280,12 @@ class PosRRR(OffsetKinematics):
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
-        # range of one turn at most
-        single_a2 = 1.0 if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a2 = (
+            1.0
+            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
+            else 0.0
+        )
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
@@ -287,8 +295,12 @@ class PosRRR(OffsetKinematics):
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
-        # range of one turn at most
-        single_a3 = 1.0 if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a3 = (
+            1.0
+            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
+            else 0.0
+        )
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         machine_scale = a1 + a2 + a3 + d4  # a length of the machine
         effective_q3_2 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns

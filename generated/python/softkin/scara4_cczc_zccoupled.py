@@ -12,9 +12,9 @@ Axes:
 
 Configuration:
     elbow: 1 = right, 2 = left, 0 = automatic, 3 = both coincide
-    period of A4: signed number of the turn, 0 = nearest to the reference
-    period of A1: signed number of the turn, 0 = nearest to the reference
-    period of A2: signed number of the turn, 0 = nearest to the reference
+    period of A4: signed number of the turn, 0 = open: see `inverse`
+    period of A1: signed number of the turn, 0 = open: see `inverse`
+    period of A2: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     elbow: type 1
@@ -174,11 +174,13 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
             low=-1000000000.0, high=1000000000.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="lower_a4", kind="angle", unit="deg", meaning="A4: lower limit of the axis, both 0: no limit",
+            name="lower_a4", kind="angle", unit="deg",
+            meaning="A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
             low=-720.0, high=720.0, low_is_open=False, default=0.0,
         ),
         Parameter(
-            name="upper_a4", kind="angle", unit="deg", meaning="A4: upper limit of the axis, both 0: no limit",
+            name="upper_a4", kind="angle", unit="deg",
+            meaning="A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
             low=-720.0, high=720.0, low_is_open=False, default=0.0,
         ),
         Parameter(
@@ -226,8 +228,8 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         upper_a2: A2: upper limit of the axis, both 0: no limit [deg]
         lower_a3: A3: lower limit of the axis, both 0: no limit [u]
         upper_a3: A3: upper limit of the axis, both 0: no limit [u]
-        lower_a4: A4: lower limit of the axis, both 0: no limit [deg]
-        upper_a4: A4: upper limit of the axis, both 0: no limit [deg]
+        lower_a4: A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]
+        upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch [deg]
         check_limits: inverse kinematics tests the limits
         """
         values = self._accept(
@@ -284,9 +286,15 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         if not (upper_a3 >= -1e9 and upper_a3 <= 1e9):
             raise self._refusal("upper_a3: A3: upper limit of the axis, both 0: no limit", upper_a3=upper_a3)
         if not (lower_a4 >= -720.0 and lower_a4 <= 720.0):
-            raise self._refusal("lower_a4: A4: lower limit of the axis, both 0: no limit", lower_a4=lower_a4)
+            raise self._refusal(
+                "lower_a4: A4: lower limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
+                lower_a4=lower_a4,
+            )
         if not (upper_a4 >= -720.0 and upper_a4 <= 720.0):
-            raise self._refusal("upper_a4: A4: upper limit of the axis, both 0: no limit", upper_a4=upper_a4)
+            raise self._refusal(
+                "upper_a4: A4: upper limit of the axis, both 0: no limit, but -720 .. 720 while it has a pitch",
+                upper_a4=upper_a4,
+            )
         if not (abs(gear_coupling*pitch_zc) <= 0.0):
             raise self._refusal(
                 "the coupling is given once: pitch_zc or gear_coupling, not both", pitch_zc=pitch_zc,
@@ -300,8 +308,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
-        # range of one turn at most
-        single_a1 = 1.0 if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a1 = (
+            1.0
+            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
+            else 0.0
+        )
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
@@ -311,8 +323,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
-        # range of one turn at most
-        single_a2 = 1.0 if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a2 = (
+            1.0
+            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
+            else 0.0
+        )
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
@@ -343,8 +359,12 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
         lowest_a4 = -1e12 if unlimited_a4 > 0.0 else effective_lower_a4 - tolerance_a4
         highest_a4 = 1e12 if unlimited_a4 > 0.0 else effective_upper_a4 + tolerance_a4
-        # range of one turn at most
-        single_a4 = 1.0 if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a4 = (
+            1.0
+            if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
+            else 0.0
+        )
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         machine_scale = link_length_1 + link_length_2  # a length of the machine
         scale_a2 = 2.0*link_length_1*link_length_2  # a2: law of cosines in the x² + y² equation
@@ -529,11 +549,11 @@ class Scara4CCZCZCcoupled(OffsetKinematics, TwistChoice):
         # limits of A2
         if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
             return Status.UNREACHABLE
-        # limits of A3
-        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
-            return Status.UNREACHABLE
         # limits of A4
         if not (axis_a4 >= lowest_a4 and axis_a4 <= highest_a4):
+            return Status.UNREACHABLE
+        # limits of A3
+        if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
             return Status.UNREACHABLE
         return Status.OK
 

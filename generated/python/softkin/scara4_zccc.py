@@ -11,9 +11,9 @@ Axes:
 
 Configuration:
     elbow: 1 = right, 2 = left, 0 = automatic, 3 = both coincide
-    period of A2: signed number of the turn, 0 = nearest to the reference
-    period of A3: signed number of the turn, 0 = nearest to the reference
-    period of A4: signed number of the turn, 0 = nearest to the reference
+    period of A2: signed number of the turn, 0 = open: see `inverse`
+    period of A3: signed number of the turn, 0 = open: see `inverse`
+    period of A4: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     elbow: type 1
@@ -280,8 +280,12 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
-        # range of one turn at most
-        single_a2 = 1.0 if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a2 = (
+            1.0
+            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
+            else 0.0
+        )
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
@@ -291,8 +295,12 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
-        # range of one turn at most
-        single_a3 = 1.0 if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a3 = (
+            1.0
+            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
+            else 0.0
+        )
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_a4 < upper_a4) or (abs(lower_a4) + abs(upper_a4) <= 0.0)):
             raise self._refusal("lower_a4 below upper_a4, or both 0", lower_a4=lower_a4, upper_a4=upper_a4)
@@ -302,8 +310,12 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         tolerance_a4 = 1e-9 + 1e-9*abs(effective_lower_a4) + 1e-9*abs(effective_upper_a4)
         lowest_a4 = -1e12 if unlimited_a4 > 0.0 else effective_lower_a4 - tolerance_a4
         highest_a4 = 1e12 if unlimited_a4 > 0.0 else effective_upper_a4 + tolerance_a4
-        # range of one turn at most
-        single_a4 = 1.0 if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a4 = (
+            1.0
+            if (unlimited_a4 <= 0.0) and (effective_upper_a4 - effective_lower_a4 <= 350.0 + tolerance_a4)
+            else 0.0
+        )
         mid_a4 = 0.5*effective_lower_a4 + 0.5*effective_upper_a4
         machine_scale = link_length_1 + link_length_2 + link_length_3  # a length of the machine
         scale_a3 = 2.0*link_length_1*link_length_2  # a3: law of cosines in the x² + y² equation
@@ -466,9 +478,6 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         lowest_a2 = k.lowest_a2
         lowest_a3 = k.lowest_a3
         lowest_a4 = k.lowest_a4
-        # limits of A1
-        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
-            return Status.UNREACHABLE
         # limits of A2
         if not (axis_a2 >= lowest_a2 and axis_a2 <= highest_a2):
             return Status.UNREACHABLE
@@ -477,6 +486,9 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             return Status.UNREACHABLE
         # limits of A4
         if not (axis_a4 >= lowest_a4 and axis_a4 <= highest_a4):
+            return Status.UNREACHABLE
+        # limits of A1
+        if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return Status.UNREACHABLE
         return Status.OK
 

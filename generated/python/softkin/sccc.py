@@ -11,9 +11,9 @@ Axes:
 
 Configuration:
     elbow: 1 = right, 2 = left, 0 = automatic, 3 = both coincide
-    period of A1: signed number of the turn, 0 = nearest to the reference
-    period of A2: signed number of the turn, 0 = nearest to the reference
-    period of A3: signed number of the turn, 0 = nearest to the reference
+    period of A1: signed number of the turn, 0 = open: see `inverse`
+    period of A2: signed number of the turn, 0 = open: see `inverse`
+    period of A3: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     elbow: type 1
@@ -321,8 +321,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         tolerance_a1 = 1e-9 + 1e-9*abs(effective_lower_a1) + 1e-9*abs(effective_upper_a1)
         lowest_a1 = -1e12 if unlimited_a1 > 0.0 else effective_lower_a1 - tolerance_a1
         highest_a1 = 1e12 if unlimited_a1 > 0.0 else effective_upper_a1 + tolerance_a1
-        # range of one turn at most
-        single_a1 = 1.0 if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a1 = (
+            1.0
+            if (unlimited_a1 <= 0.0) and (effective_upper_a1 - effective_lower_a1 <= 350.0 + tolerance_a1)
+            else 0.0
+        )
         mid_a1 = 0.5*effective_lower_a1 + 0.5*effective_upper_a1
         if not ((lower_a2 < upper_a2) or (abs(lower_a2) + abs(upper_a2) <= 0.0)):
             raise self._refusal("lower_a2 below upper_a2, or both 0", lower_a2=lower_a2, upper_a2=upper_a2)
@@ -332,8 +336,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         tolerance_a2 = 1e-9 + 1e-9*abs(effective_lower_a2) + 1e-9*abs(effective_upper_a2)
         lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
-        # range of one turn at most
-        single_a2 = 1.0 if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a2 = (
+            1.0
+            if (unlimited_a2 <= 0.0) and (effective_upper_a2 - effective_lower_a2 <= 350.0 + tolerance_a2)
+            else 0.0
+        )
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         if not ((lower_a3 < upper_a3) or (abs(lower_a3) + abs(upper_a3) <= 0.0)):
             raise self._refusal("lower_a3 below upper_a3, or both 0", lower_a3=lower_a3, upper_a3=upper_a3)
@@ -343,8 +351,12 @@ class SCCC(OffsetKinematics, TwistChoice):
         tolerance_a3 = 1e-9 + 1e-9*abs(effective_lower_a3) + 1e-9*abs(effective_upper_a3)
         lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
-        # range of one turn at most
-        single_a3 = 1.0 if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 360.0) else 0.0
+        # one value inside the limits
+        single_a3 = (
+            1.0
+            if (unlimited_a3 <= 0.0) and (effective_upper_a3 - effective_lower_a3 <= 350.0 + tolerance_a3)
+            else 0.0
+        )
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         if not ((lower_joint_2 < upper_joint_2) or (abs(lower_joint_2) + abs(upper_joint_2) <= 0.0)):
             raise self._refusal(

@@ -10,8 +10,8 @@ Axes:
 
 Configuration:
     roll: 1 = positive, 2 = negative, 0 = automatic, 3 = both coincide
-    period of A: signed number of the turn, 0 = nearest to the reference
-    period of B: signed number of the turn, 0 = nearest to the reference
+    period of A: signed number of the turn, 0 = open: see `inverse`
+    period of B: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     tool_along_a: type 1
@@ -232,8 +232,12 @@ class Wrist2(OrientationKinematics):
         tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
         lowest_a = -1e12 if unlimited_a > 0.0 else effective_lower_a - tolerance_a
         highest_a = 1e12 if unlimited_a > 0.0 else effective_upper_a + tolerance_a
-        # range of one turn at most
-        single_a = 1.0 if (unlimited_a <= 0.0) and (effective_upper_a - effective_lower_a <= 360.0) else 0.0
+        # one value inside the limits
+        single_a = (
+            1.0
+            if (unlimited_a <= 0.0) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
+            else 0.0
+        )
         mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
         if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
             raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
@@ -243,8 +247,12 @@ class Wrist2(OrientationKinematics):
         tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
         lowest_b = -1e12 if unlimited_b > 0.0 else effective_lower_b - tolerance_b
         highest_b = 1e12 if unlimited_b > 0.0 else effective_upper_b + tolerance_b
-        # range of one turn at most
-        single_b = 1.0 if (unlimited_b <= 0.0) and (effective_upper_b - effective_lower_b <= 360.0) else 0.0
+        # one value inside the limits
+        single_b = (
+            1.0
+            if (unlimited_b <= 0.0) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
+            else 0.0
+        )
         mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
         machine_scale = 1.0  # a length of the machine
         # between the axes: only a flange that keeps its orientation tells where that is

@@ -10,9 +10,9 @@ Axes:
 
 Configuration:
     hand: 1 = down, 2 = up, 0 = automatic, 3 = both coincide
-    period of A: signed number of the turn, 0 = nearest to the reference
-    period of B: signed number of the turn, 0 = nearest to the reference
-    period of C: signed number of the turn, 0 = nearest to the reference
+    period of A: signed number of the turn, 0 = open: see `inverse`
+    period of B: signed number of the turn, 0 = open: see `inverse`
+    period of C: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
     a_parallel_c: type 1
@@ -235,8 +235,12 @@ class Wrist3(OrientationKinematics):
         tolerance_a = 1e-9 + 1e-9*abs(effective_lower_a) + 1e-9*abs(effective_upper_a)
         lowest_a = -1e12 if unlimited_a > 0.0 else effective_lower_a - tolerance_a
         highest_a = 1e12 if unlimited_a > 0.0 else effective_upper_a + tolerance_a
-        # range of one turn at most
-        single_a = 1.0 if (unlimited_a <= 0.0) and (effective_upper_a - effective_lower_a <= 360.0) else 0.0
+        # one value inside the limits
+        single_a = (
+            1.0
+            if (unlimited_a <= 0.0) and (effective_upper_a - effective_lower_a <= 350.0 + tolerance_a)
+            else 0.0
+        )
         mid_a = 0.5*effective_lower_a + 0.5*effective_upper_a
         if not ((lower_b < upper_b) or (abs(lower_b) + abs(upper_b) <= 0.0)):
             raise self._refusal("lower_b below upper_b, or both 0", lower_b=lower_b, upper_b=upper_b)
@@ -246,8 +250,12 @@ class Wrist3(OrientationKinematics):
         tolerance_b = 1e-9 + 1e-9*abs(effective_lower_b) + 1e-9*abs(effective_upper_b)
         lowest_b = -1e12 if unlimited_b > 0.0 else effective_lower_b - tolerance_b
         highest_b = 1e12 if unlimited_b > 0.0 else effective_upper_b + tolerance_b
-        # range of one turn at most
-        single_b = 1.0 if (unlimited_b <= 0.0) and (effective_upper_b - effective_lower_b <= 360.0) else 0.0
+        # one value inside the limits
+        single_b = (
+            1.0
+            if (unlimited_b <= 0.0) and (effective_upper_b - effective_lower_b <= 350.0 + tolerance_b)
+            else 0.0
+        )
         mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
         if not ((lower_c < upper_c) or (abs(lower_c) + abs(upper_c) <= 0.0)):
             raise self._refusal("lower_c below upper_c, or both 0", lower_c=lower_c, upper_c=upper_c)
@@ -257,8 +265,12 @@ class Wrist3(OrientationKinematics):
         tolerance_c = 1e-9 + 1e-9*abs(effective_lower_c) + 1e-9*abs(effective_upper_c)
         lowest_c = -1e12 if unlimited_c > 0.0 else effective_lower_c - tolerance_c
         highest_c = 1e12 if unlimited_c > 0.0 else effective_upper_c + tolerance_c
-        # range of one turn at most
-        single_c = 1.0 if (unlimited_c <= 0.0) and (effective_upper_c - effective_lower_c <= 360.0) else 0.0
+        # one value inside the limits
+        single_c = (
+            1.0
+            if (unlimited_c <= 0.0) and (effective_upper_c - effective_lower_c <= 350.0 + tolerance_c)
+            else 0.0
+        )
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
         machine_scale = 1.0  # a length of the machine
         return Constants(

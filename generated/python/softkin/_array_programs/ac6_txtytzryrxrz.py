@@ -196,18 +196,18 @@ class ArrayPrograms(Programs):
         lowest_a5 = k.lowest_a5
         lowest_a6 = k.lowest_a6
         status = passed(axes)
-        # limits of A1
-        require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
-        # limits of A2
-        require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
-        # limits of A3
-        require(status, (axis_a3 >= lowest_a3) & (axis_a3 <= highest_a3), Status.UNREACHABLE)
         # limits of A4
         require(status, (axis_a4 >= lowest_a4) & (axis_a4 <= highest_a4), Status.UNREACHABLE)
         # limits of A5
         require(status, (axis_a5 >= lowest_a5) & (axis_a5 <= highest_a5), Status.UNREACHABLE)
         # limits of A6
         require(status, (axis_a6 >= lowest_a6) & (axis_a6 <= highest_a6), Status.UNREACHABLE)
+        # limits of A1
+        require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
+        # limits of A2
+        require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
+        # limits of A3
+        require(status, (axis_a3 >= lowest_a3) & (axis_a3 <= highest_a3), Status.UNREACHABLE)
         return status
 
     def every_branch(

@@ -146,10 +146,10 @@ class ArrayPrograms(Programs):
         lowest_r = k.lowest_r
         lowest_theta = k.lowest_theta
         status = passed(axes)
-        # limits of R
-        require(status, (axis_r >= lowest_r) & (axis_r <= highest_r), Status.UNREACHABLE)
         # limits of Theta
         require(status, (axis_theta >= lowest_theta) & (axis_theta <= highest_theta), Status.UNREACHABLE)
+        # limits of R
+        require(status, (axis_r >= lowest_r) & (axis_r <= highest_r), Status.UNREACHABLE)
         # limits of Phi
         require(status, (axis_phi >= lowest_phi) & (axis_phi <= highest_phi), Status.UNREACHABLE)
         return status

@@ -110,10 +110,10 @@ class ArrayPrograms(Programs):
         lowest_x = k.lowest_x
         lowest_y = k.lowest_y
         status = passed(axes)
+        # limits of R
+        require(status, (axis_r >= lowest_r) & (axis_r <= highest_r), Status.UNREACHABLE)
         # limits of X
         require(status, (axis_x >= lowest_x) & (axis_x <= highest_x), Status.UNREACHABLE)
         # limits of Y
         require(status, (axis_y >= lowest_y) & (axis_y <= highest_y), Status.UNREACHABLE)
-        # limits of R
-        require(status, (axis_r >= lowest_r) & (axis_r <= highest_r), Status.UNREACHABLE)
         return status

@@ -156,16 +156,16 @@ class ArrayPrograms(Programs):
         lowest_y = k.lowest_y
         lowest_z = k.lowest_z
         status = passed(axes)
+        # limits of A
+        require(status, (axis_a >= lowest_a) & (axis_a <= highest_a), Status.UNREACHABLE)
+        # limits of B
+        require(status, (axis_b >= lowest_b) & (axis_b <= highest_b), Status.UNREACHABLE)
         # limits of X
         require(status, (axis_x >= lowest_x) & (axis_x <= highest_x), Status.UNREACHABLE)
         # limits of Y
         require(status, (axis_y >= lowest_y) & (axis_y <= highest_y), Status.UNREACHABLE)
         # limits of Z
         require(status, (axis_z >= lowest_z) & (axis_z <= highest_z), Status.UNREACHABLE)
-        # limits of A
-        require(status, (axis_a >= lowest_a) & (axis_a <= highest_a), Status.UNREACHABLE)
-        # limits of B
-        require(status, (axis_b >= lowest_b) & (axis_b <= highest_b), Status.UNREACHABLE)
         return status
 
     def every_branch(

@@ -190,14 +190,14 @@ class ArrayPrograms(Programs):
         lowest_a3 = k.lowest_a3
         lowest_a4 = k.lowest_a4
         status = passed(axes)
-        # limits of A1
-        require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
         # limits of A2
         require(status, (axis_a2 >= lowest_a2) & (axis_a2 <= highest_a2), Status.UNREACHABLE)
         # limits of A3
         require(status, (axis_a3 >= lowest_a3) & (axis_a3 <= highest_a3), Status.UNREACHABLE)
         # limits of A4
         require(status, (axis_a4 >= lowest_a4) & (axis_a4 <= highest_a4), Status.UNREACHABLE)
+        # limits of A1
+        require(status, (axis_a1 >= lowest_a1) & (axis_a1 <= highest_a1), Status.UNREACHABLE)
         return status
 
     def every_branch(

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._configuration import turn_inside
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._types import Diagnosis, Reals, Rotation, Status, Vector
 
@@ -365,38 +366,62 @@ def limits(constants: Constants, axes: Reals) -> Diagnosis:
     lowest_a6 = k.lowest_a6
     if not (axis_a1 >= lowest_a1):
         missing = lowest_a1 - axis_a1
+        if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+            return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
     if not (axis_a1 <= highest_a1):
         missing = axis_a1 - highest_a1
+        if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+            return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
     if not (axis_a2 >= lowest_a2):
         missing = lowest_a2 - axis_a2
+        if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+            return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
     if not (axis_a2 <= highest_a2):
         missing = axis_a2 - highest_a2
+        if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+            return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
     if not (axis_a3 >= lowest_a3):
         missing = lowest_a3 - axis_a3
+        if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+            return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
     if not (axis_a3 <= highest_a3):
         missing = axis_a3 - highest_a3
+        if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+            return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
     if not (axis_a4 >= lowest_a4):
         missing = lowest_a4 - axis_a4
+        if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
+            return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A4: below its lower limit [deg]", missing)
     if not (axis_a4 <= highest_a4):
         missing = axis_a4 - highest_a4
+        if turn := turn_inside(axis_a4, lowest_a4, highest_a4):
+            return Diagnosis(Status.UNREACHABLE, "A4: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A4: above its upper limit [deg]", missing)
     if not (axis_a5 >= lowest_a5):
         missing = lowest_a5 - axis_a5
+        if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
+            return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A5: below its lower limit [deg]", missing)
     if not (axis_a5 <= highest_a5):
         missing = axis_a5 - highest_a5
+        if turn := turn_inside(axis_a5, lowest_a5, highest_a5):
+            return Diagnosis(Status.UNREACHABLE, "A5: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A5: above its upper limit [deg]", missing)
     if not (axis_a6 >= lowest_a6):
         missing = lowest_a6 - axis_a6
+        if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
+            return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A6: below its lower limit [deg]", missing)
     if not (axis_a6 <= highest_a6):
         missing = axis_a6 - highest_a6
+        if turn := turn_inside(axis_a6, lowest_a6, highest_a6):
+            return Diagnosis(Status.UNREACHABLE, "A6: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A6: above its upper limit [deg]", missing)
     return Diagnosis(Status.OK, "", 0.0)

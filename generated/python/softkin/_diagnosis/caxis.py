@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._configuration import turn_inside
 from softkin._scalar import DEGREE, arctan2, nearest_period, sqrt
 from softkin._types import Diagnosis, Reals, Rotation, Status, Vector
 
@@ -46,8 +47,12 @@ def limits(constants: Constants, axes: Reals) -> Diagnosis:
     lowest_c = k.lowest_c
     if not (axis_c >= lowest_c):
         missing = lowest_c - axis_c
+        if turn := turn_inside(axis_c, lowest_c, highest_c):
+            return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "C: below its lower limit [deg]", missing)
     if not (axis_c <= highest_c):
         missing = axis_c - highest_c
+        if turn := turn_inside(axis_c, lowest_c, highest_c):
+            return Diagnosis(Status.UNREACHABLE, "C: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "C: above its upper limit [deg]", missing)
     return Diagnosis(Status.OK, "", 0.0)

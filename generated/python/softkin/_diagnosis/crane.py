@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._configuration import turn_inside
 from softkin._scalar import DEGREE, arctan2, cos, nearest_on_arc, nearest_period, sin, sqrt
 from softkin._types import Diagnosis, Reals, Rotation, Status, Vector
 
@@ -71,18 +72,26 @@ def limits(constants: Constants, axes: Reals) -> Diagnosis:
     lowest_phi = k.lowest_phi
     lowest_r = k.lowest_r
     lowest_theta = k.lowest_theta
+    if not (axis_theta >= lowest_theta):
+        missing = lowest_theta - axis_theta
+        if turn := turn_inside(axis_theta, lowest_theta, highest_theta):
+            return Diagnosis(
+                Status.UNREACHABLE, "Theta: this turn is beyond a limit, name one inside [deg]", missing, turn,
+            )
+        return Diagnosis(Status.UNREACHABLE, "Theta: below its lower limit [deg]", missing)
+    if not (axis_theta <= highest_theta):
+        missing = axis_theta - highest_theta
+        if turn := turn_inside(axis_theta, lowest_theta, highest_theta):
+            return Diagnosis(
+                Status.UNREACHABLE, "Theta: this turn is beyond a limit, name one inside [deg]", missing, turn,
+            )
+        return Diagnosis(Status.UNREACHABLE, "Theta: above its upper limit [deg]", missing)
     if not (axis_r >= lowest_r):
         missing = lowest_r - axis_r
         return Diagnosis(Status.UNREACHABLE, "R: below its lower limit [u]", missing)
     if not (axis_r <= highest_r):
         missing = axis_r - highest_r
         return Diagnosis(Status.UNREACHABLE, "R: above its upper limit [u]", missing)
-    if not (axis_theta >= lowest_theta):
-        missing = lowest_theta - axis_theta
-        return Diagnosis(Status.UNREACHABLE, "Theta: below its lower limit [deg]", missing)
-    if not (axis_theta <= highest_theta):
-        missing = axis_theta - highest_theta
-        return Diagnosis(Status.UNREACHABLE, "Theta: above its upper limit [deg]", missing)
     if not (axis_phi >= lowest_phi):
         missing = lowest_phi - axis_phi
         return Diagnosis(Status.UNREACHABLE, "Phi: below its lower limit [deg]", missing)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._configuration import turn_inside
 from softkin._scalar import DEGREE, arctan2, nearest_period, sqrt
 from softkin._types import Diagnosis, Reals, Rotation, Status, Vector
 
@@ -59,6 +60,16 @@ def limits(constants: Constants, axes: Reals) -> Diagnosis:
     lowest_r = k.lowest_r
     lowest_x = k.lowest_x
     lowest_y = k.lowest_y
+    if not (axis_r >= lowest_r):
+        missing = lowest_r - axis_r
+        if turn := turn_inside(axis_r, lowest_r, highest_r):
+            return Diagnosis(Status.UNREACHABLE, "R: this turn is beyond a limit, name one inside [deg]", missing, turn)
+        return Diagnosis(Status.UNREACHABLE, "R: below its lower limit [deg]", missing)
+    if not (axis_r <= highest_r):
+        missing = axis_r - highest_r
+        if turn := turn_inside(axis_r, lowest_r, highest_r):
+            return Diagnosis(Status.UNREACHABLE, "R: this turn is beyond a limit, name one inside [deg]", missing, turn)
+        return Diagnosis(Status.UNREACHABLE, "R: above its upper limit [deg]", missing)
     if not (axis_x >= lowest_x):
         missing = lowest_x - axis_x
         return Diagnosis(Status.UNREACHABLE, "X: below its lower limit [u]", missing)
@@ -71,10 +82,4 @@ def limits(constants: Constants, axes: Reals) -> Diagnosis:
     if not (axis_y <= highest_y):
         missing = axis_y - highest_y
         return Diagnosis(Status.UNREACHABLE, "Y: above its upper limit [u]", missing)
-    if not (axis_r >= lowest_r):
-        missing = lowest_r - axis_r
-        return Diagnosis(Status.UNREACHABLE, "R: below its lower limit [deg]", missing)
-    if not (axis_r <= highest_r):
-        missing = axis_r - highest_r
-        return Diagnosis(Status.UNREACHABLE, "R: above its upper limit [deg]", missing)
     return Diagnosis(Status.OK, "", 0.0)

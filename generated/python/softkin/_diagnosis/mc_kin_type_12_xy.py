@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._configuration import turn_inside
 from softkin._scalar import DEGREE, arctan2, nearest_period, root, sqrt
 from softkin._types import Diagnosis, Reals, Rotation, Status, Vector
 
@@ -202,14 +203,22 @@ def limits(constants: Constants, axes: Reals) -> Diagnosis:
     lowest_a2 = k.lowest_a2
     if not (axis_a1 >= lowest_a1):
         missing = lowest_a1 - axis_a1
+        if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+            return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
     if not (axis_a1 <= highest_a1):
         missing = axis_a1 - highest_a1
+        if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+            return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
     if not (axis_a2 >= lowest_a2):
         missing = lowest_a2 - axis_a2
+        if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+            return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
     if not (axis_a2 <= highest_a2):
         missing = axis_a2 - highest_a2
+        if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+            return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
     return Diagnosis(Status.OK, "", 0.0)

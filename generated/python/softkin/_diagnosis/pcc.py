@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._configuration import turn_inside
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._types import Diagnosis, Reals, Rotation, Status, Vector
 
@@ -92,26 +93,78 @@ def limits(constants: Constants, axes: Reals) -> Diagnosis:
     offset_a2 = k.offset_a2
     if not (axis_a1 >= lowest_a1):
         missing = lowest_a1 - axis_a1
+        if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+            return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
     if not (axis_a1 <= highest_a1):
         missing = axis_a1 - highest_a1
+        if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+            return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
     if not (axis_a2 >= lowest_a2):
         missing = lowest_a2 - axis_a2
+        if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+            return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
     if not (axis_a2 <= highest_a2):
         missing = axis_a2 - highest_a2
+        if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+            return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
     a1 = DEGREE*(axis_a1 - offset_a1)
     a2 = DEGREE*(axis_a2 - offset_a2)
     value_elbow = (a2 - a1)/DEGREE
     if not (value_elbow >= lowest_elbow):
         missing = lowest_elbow - value_elbow
+        if turn := turn_inside(
+            axis_a2,
+            max(lowest_a2, axis_a2 + lowest_elbow - value_elbow),
+            min(highest_a2, axis_a2 + highest_elbow - value_elbow),
+        ):
+            return Diagnosis(
+                Status.UNREACHABLE,
+                ("the outer arm relative to the inner arm: this turn of A2 is beyond a limit, name one inside [deg]"),
+                missing,
+                turn,
+            )
+        if turn := turn_inside(
+            axis_a1,
+            max(lowest_a1, axis_a1 + value_elbow - highest_elbow),
+            min(highest_a1, axis_a1 + value_elbow - lowest_elbow),
+        ):
+            return Diagnosis(
+                Status.UNREACHABLE,
+                ("the outer arm relative to the inner arm: this turn of A1 is beyond a limit, name one inside [deg]"),
+                missing,
+                turn,
+            )
         return Diagnosis(
             Status.UNREACHABLE, "the outer arm relative to the inner arm: below its lower limit [deg]", missing,
         )
     if not (value_elbow <= highest_elbow):
         missing = value_elbow - highest_elbow
+        if turn := turn_inside(
+            axis_a2,
+            max(lowest_a2, axis_a2 + lowest_elbow - value_elbow),
+            min(highest_a2, axis_a2 + highest_elbow - value_elbow),
+        ):
+            return Diagnosis(
+                Status.UNREACHABLE,
+                ("the outer arm relative to the inner arm: this turn of A2 is beyond a limit, name one inside [deg]"),
+                missing,
+                turn,
+            )
+        if turn := turn_inside(
+            axis_a1,
+            max(lowest_a1, axis_a1 + value_elbow - highest_elbow),
+            min(highest_a1, axis_a1 + value_elbow - lowest_elbow),
+        ):
+            return Diagnosis(
+                Status.UNREACHABLE,
+                ("the outer arm relative to the inner arm: this turn of A1 is beyond a limit, name one inside [deg]"),
+                missing,
+                turn,
+            )
         return Diagnosis(
             Status.UNREACHABLE, "the outer arm relative to the inner arm: above its upper limit [deg]", missing,
         )

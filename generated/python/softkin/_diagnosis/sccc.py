@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._configuration import turn_inside
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._types import Diagnosis, Reals, Rotation, Status, Vector
 
@@ -144,21 +145,33 @@ def limits(constants: Constants, axes: Reals) -> Diagnosis:
     offset_a3 = k.offset_a3
     if not (axis_a1 >= lowest_a1):
         missing = lowest_a1 - axis_a1
+        if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+            return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A1: below its lower limit [deg]", missing)
     if not (axis_a1 <= highest_a1):
         missing = axis_a1 - highest_a1
+        if turn := turn_inside(axis_a1, lowest_a1, highest_a1):
+            return Diagnosis(Status.UNREACHABLE, "A1: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A1: above its upper limit [deg]", missing)
     if not (axis_a2 >= lowest_a2):
         missing = lowest_a2 - axis_a2
+        if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+            return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A2: below its lower limit [deg]", missing)
     if not (axis_a2 <= highest_a2):
         missing = axis_a2 - highest_a2
+        if turn := turn_inside(axis_a2, lowest_a2, highest_a2):
+            return Diagnosis(Status.UNREACHABLE, "A2: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A2: above its upper limit [deg]", missing)
     if not (axis_a3 >= lowest_a3):
         missing = lowest_a3 - axis_a3
+        if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+            return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A3: below its lower limit [deg]", missing)
     if not (axis_a3 <= highest_a3):
         missing = axis_a3 - highest_a3
+        if turn := turn_inside(axis_a3, lowest_a3, highest_a3):
+            return Diagnosis(Status.UNREACHABLE, "A3: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A3: above its upper limit [deg]", missing)
     a1 = DEGREE*(axis_a1 - offset_a1)
     motor_a2 = DEGREE*(axis_a2 - offset_a2)
@@ -166,17 +179,49 @@ def limits(constants: Constants, axes: Reals) -> Diagnosis:
     value_joint_2 = a2/DEGREE
     if not (value_joint_2 >= lowest_joint_2):
         missing = lowest_joint_2 - value_joint_2
+        if turn := turn_inside(
+            axis_a2,
+            max(lowest_a2, axis_a2 + lowest_joint_2 - value_joint_2),
+            min(highest_a2, axis_a2 + highest_joint_2 - value_joint_2),
+        ):
+            return Diagnosis(
+                Status.UNREACHABLE, "joint 2: this turn of A2 is beyond a limit, name one inside [deg]", missing, turn,
+            )
         return Diagnosis(Status.UNREACHABLE, "joint 2: below its lower limit [deg]", missing)
     if not (value_joint_2 <= highest_joint_2):
         missing = value_joint_2 - highest_joint_2
+        if turn := turn_inside(
+            axis_a2,
+            max(lowest_a2, axis_a2 + lowest_joint_2 - value_joint_2),
+            min(highest_a2, axis_a2 + highest_joint_2 - value_joint_2),
+        ):
+            return Diagnosis(
+                Status.UNREACHABLE, "joint 2: this turn of A2 is beyond a limit, name one inside [deg]", missing, turn,
+            )
         return Diagnosis(Status.UNREACHABLE, "joint 2: above its upper limit [deg]", missing)
     motor_a3 = DEGREE*(axis_a3 - offset_a3)
     a3 = motor_a3 + a1*coupling_13 + coupling_23*motor_a2
     value_joint_3 = a3/DEGREE
     if not (value_joint_3 >= lowest_joint_3):
         missing = lowest_joint_3 - value_joint_3
+        if turn := turn_inside(
+            axis_a3,
+            max(lowest_a3, axis_a3 + lowest_joint_3 - value_joint_3),
+            min(highest_a3, axis_a3 + highest_joint_3 - value_joint_3),
+        ):
+            return Diagnosis(
+                Status.UNREACHABLE, "joint 3: this turn of A3 is beyond a limit, name one inside [deg]", missing, turn,
+            )
         return Diagnosis(Status.UNREACHABLE, "joint 3: below its lower limit [deg]", missing)
     if not (value_joint_3 <= highest_joint_3):
         missing = value_joint_3 - highest_joint_3
+        if turn := turn_inside(
+            axis_a3,
+            max(lowest_a3, axis_a3 + lowest_joint_3 - value_joint_3),
+            min(highest_a3, axis_a3 + highest_joint_3 - value_joint_3),
+        ):
+            return Diagnosis(
+                Status.UNREACHABLE, "joint 3: this turn of A3 is beyond a limit, name one inside [deg]", missing, turn,
+            )
         return Diagnosis(Status.UNREACHABLE, "joint 3: above its upper limit [deg]", missing)
     return Diagnosis(Status.OK, "", 0.0)

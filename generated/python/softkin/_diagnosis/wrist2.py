@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from softkin._configuration import turn_inside
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
 from softkin._types import Diagnosis, Reals, Rotation, Status, Vector
 
@@ -64,14 +65,22 @@ def limits(constants: Constants, axes: Reals) -> Diagnosis:
     lowest_b = k.lowest_b
     if not (axis_a >= lowest_a):
         missing = lowest_a - axis_a
+        if turn := turn_inside(axis_a, lowest_a, highest_a):
+            return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A: below its lower limit [deg]", missing)
     if not (axis_a <= highest_a):
         missing = axis_a - highest_a
+        if turn := turn_inside(axis_a, lowest_a, highest_a):
+            return Diagnosis(Status.UNREACHABLE, "A: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "A: above its upper limit [deg]", missing)
     if not (axis_b >= lowest_b):
         missing = lowest_b - axis_b
+        if turn := turn_inside(axis_b, lowest_b, highest_b):
+            return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "B: below its lower limit [deg]", missing)
     if not (axis_b <= highest_b):
         missing = axis_b - highest_b
+        if turn := turn_inside(axis_b, lowest_b, highest_b):
+            return Diagnosis(Status.UNREACHABLE, "B: this turn is beyond a limit, name one inside [deg]", missing, turn)
         return Diagnosis(Status.UNREACHABLE, "B: above its upper limit [deg]", missing)
     return Diagnosis(Status.OK, "", 0.0)

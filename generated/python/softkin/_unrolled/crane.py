@@ -41,11 +41,6 @@ def unrolled(k: Constants) -> Unrolled:
         ):
             return (2.0,)
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
-        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        axis_r = offset_r + radius_phi
-        # limits of R
-        if not (axis_r >= lowest_r and axis_r <= highest_r):
-            return (3.0,)
         # its reference where it is free
         if radius_theta > machine_scale_times_free_angle:
             direction_x_theta = x
@@ -60,6 +55,11 @@ def unrolled(k: Constants) -> Unrolled:
             axis_theta = nearest_period(axis_theta, open_theta)
         # limits of Theta
         if not (axis_theta >= lowest_theta and axis_theta <= highest_theta):
+            return (3.0,)
+        radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
+        axis_r = offset_r + radius_phi
+        # limits of R
+        if not (axis_r >= lowest_r and axis_r <= highest_r):
             return (3.0,)
         # its reference where it is free
         if radius_phi > machine_scale_times_free_angle:

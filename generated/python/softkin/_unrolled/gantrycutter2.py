@@ -48,14 +48,6 @@ def unrolled(k: Constants) -> Unrolled:
         # z: a planar machine has none
         if not (abs(z) <= machine_scale_times_plane):
             return (3.0,)
-        axis_x = offset_x + x
-        # limits of X
-        if not (axis_x >= lowest_x and axis_x <= highest_x):
-            return (3.0,)
-        axis_y = offset_y + y
-        # limits of Y
-        if not (axis_y >= lowest_y and axis_y <= highest_y):
-            return (3.0,)
         direction_y_r = direction_r*heading_across
         open_r = mid_r if single_r > 0.0 else ref_r  # R: where its turn is open
         axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE  # R: its turn
@@ -63,6 +55,14 @@ def unrolled(k: Constants) -> Unrolled:
             axis_r = nearest_period(axis_r, open_r)
         # limits of R
         if not (axis_r >= lowest_r and axis_r <= highest_r):
+            return (3.0,)
+        axis_x = offset_x + x
+        # limits of X
+        if not (axis_x >= lowest_x and axis_x <= highest_x):
+            return (3.0,)
+        axis_y = offset_y + y
+        # limits of Y
+        if not (axis_y >= lowest_y and axis_y <= highest_y):
             return (3.0,)
         return (
             (axis_x, axis_y, axis_r),

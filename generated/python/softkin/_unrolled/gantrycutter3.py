@@ -46,6 +46,14 @@ def unrolled(k: Constants) -> Unrolled:
         # the tool points exactly the opposite way
         if not (heading_length > 1e-11):
             return (3.0,)
+        direction_y_r = direction_r*heading_across
+        open_r = mid_r if single_r > 0.0 else ref_r  # R: where its turn is open
+        axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE  # R: its turn
+        if not -180.000000001 <= axis_r - open_r < 179.999999999:
+            axis_r = nearest_period(axis_r, open_r)
+        # limits of R
+        if not (axis_r >= lowest_r and axis_r <= highest_r):
+            return (3.0,)
         axis_x = offset_x + x
         # limits of X
         if not (axis_x >= lowest_x and axis_x <= highest_x):
@@ -57,14 +65,6 @@ def unrolled(k: Constants) -> Unrolled:
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
-            return (3.0,)
-        direction_y_r = direction_r*heading_across
-        open_r = mid_r if single_r > 0.0 else ref_r  # R: where its turn is open
-        axis_r = offset_r + arctan2(direction_y_r, heading_along + 0.0)/DEGREE  # R: its turn
-        if not -180.000000001 <= axis_r - open_r < 179.999999999:
-            axis_r = nearest_period(axis_r, open_r)
-        # limits of R
-        if not (axis_r >= lowest_r and axis_r <= highest_r):
             return (3.0,)
         return (
             (axis_x, axis_y, axis_z, axis_r),

@@ -108,7 +108,7 @@ def unrolled(k: Constants) -> Unrolled:
         a4 = DEGREE*(axis_a4_right - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc_by_360/DEGREE - a4*gear_coupling/DEGREE  # a3: affine in the z equation
         axis_a3_right = a3 + offset_a3
-        # limits of A1, limits of A2, limits of A3, limits of A4
+        # limits of A1, limits of A2, limits of A4, limits of A3
         refusal_right = (
             0.0
             if (axis_a1_right >= lowest_a1) and (axis_a2_right >= lowest_a2) and (axis_a3_right >= lowest_a3) and (axis_a4_right >= lowest_a4) and (
@@ -129,7 +129,7 @@ def unrolled(k: Constants) -> Unrolled:
         a4 = DEGREE*(axis_a4_left - offset_a4)  # A4: turns count from here on
         a3 = z + a4*pitch_zc_by_360/DEGREE - a4*gear_coupling/DEGREE  # a3: affine in the z equation
         axis_a3_left = a3 + offset_a3
-        # limits of A1, limits of A2, limits of A3, limits of A4
+        # limits of A1, limits of A2, limits of A4, limits of A3
         refusal_left = (
             0.0
             if (axis_a1_left >= lowest_a1) and (axis_a2_left >= lowest_a2) and (axis_a3_left >= lowest_a3) and (axis_a4_left >= lowest_a4) and (

@@ -1,0 +1,125 @@
+"""Axes that turn more than once, each at a regular pose of its machine, and the machines with limits around that pose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import softkin
+from softkin import KinematicsError, Status
+
+from derive.catalogue import catalogue
+from derive.mechanism import Joint, Mechanism
+
+MECHANISMS = tuple(m for _, m in catalogue() if m.period_joints)
+FULL = ("Kin_Scara2_Z", "Kin_ArticulatedRobot_6DOF")
+"""A SCARA and a six-axis arm, which are tested on all ranges and steps."""
+REACH = 14.0
+"""Degrees that an axis can go from its pose, either way, without a singular pose."""
+REGULAR = 0.03
+
+Axes = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class TurningAxis:
+    """An axis of a machine without offsets and limits, and axis values away from singular poses."""
+
+    mechanism: Mechanism
+    index: int
+    given: Mapping[str, float]
+    base: Axes
+
+    def __str__(self) -> str:
+        """Machine and axis."""
+        return f"{self.mechanism.name} {self.joint.name}"
+
+    @property
+    def joint(self) -> Joint:
+        """The joint of the axis."""
+        return self.mechanism.joints[self.index]
+
+    @property
+    def byte(self) -> int:
+        """The place of its turn in the configuration."""
+        return len(self.mechanism.branches) + [j.name for j in self.mechanism.period_joints].index(self.joint.name)
+
+    def allows(self, lower: float, upper: float) -> bool:
+        """Whether the vendor's ranges allow these limits."""
+        low, high = self.joint.limit_range or (-1e9, 1e9)
+        return low <= lower and upper <= high
+
+    def parameters(self, value: float, lower: float, upper: float) -> dict[str, float]:
+        """Of the machine whose axis has a value at the base, by its offset, and limits."""
+        key, (low, high) = self.joint.key, self.joint.offset_range or (-1e9, 1e9)
+        offset = value - self.base[self.index]
+        while offset < low:
+            offset += 360.0
+        while offset > high:
+            offset -= 360.0
+        return {**self.given, f"offset_{key}": offset, f"lower_{key}": lower, f"upper_{key}": upper}
+
+    def at(self, value: float) -> Axes:
+        """The axis values of the base, but for this axis."""
+        return (*self.base[: self.index], value, *self.base[self.index + 1 :])
+
+
+def robot_of(mechanism: Mechanism, given: Mapping[str, float]) -> softkin.Mechanism:
+    """The generated class with parameters."""
+    return softkin.catalogue()[mechanism.name](**given)
+
+
+@cache
+def turning_axes(mechanism: Mechanism) -> tuple[TurningAxis, ...]:
+    """Every axis of a mechanism that turns more than once; without what would make its inverse a search."""
+    searched = mechanism.search.where if mechanism.search else None
+    given = {p.name: 0.0 if p == searched else p.nominal for p in mechanism.parameters}
+    robot = robot_of(mechanism, given)
+    candidates = tuple(_regular(mechanism, robot))
+    found = []
+    for index, joint in enumerate(mechanism.joints):
+        if joint.multi_turn:
+            base = next(axes for axes in candidates if _can_go(robot, axes, index))
+            found.append(TurningAxis(mechanism, index, given, base))
+    return tuple(found)
+
+
+def _regular(mechanism: Mechanism, robot: softkin.Mechanism) -> Iterator[Axes]:
+    """Axis values of regular poses, from which the inverse returns."""
+    rng = np.random.default_rng(7)
+    for spread in np.linspace(0.2, 1.0, 400):
+        axes = tuple(float(v) for v in _drawn(mechanism, rng, spread))
+        if _is_regular(robot, axes) and _returns(robot, axes):
+            yield axes
+
+
+def _drawn(mechanism: Mechanism, rng: np.random.Generator, spread: float) -> list[float]:
+    """Around the pose that drawings show: loops cannot be closed anywhere."""
+    values = []
+    for joint in mechanism.joints:
+        value = joint.nominal + spread * rng.uniform(-1.0, 1.0) * (150.0 if joint.is_angle else 60.0)
+        low, high = joint.domain or (-1e9, 1e9)
+        values.append(min(max(value, low + 5.0), high))
+    return values
+
+
+def _can_go(robot: softkin.Mechanism, axes: Axes, index: int) -> bool:
+    ways = np.linspace(-REACH, REACH, 5)
+    moved = [(*axes[:index], axes[index] + way, *axes[index + 1 :]) for way in ways.tolist()]
+    branches = robot.forward(axes)[1][: robot.BRANCHES]
+    return all(_is_regular(robot, m) and robot.forward(m)[1][: robot.BRANCHES] == branches and _returns(robot, m) for m in moved)
+
+
+def _is_regular(robot: softkin.Mechanism, axes: Axes) -> bool:
+    return all(abs(margin) > REGULAR for margin in robot.singularity(axes).margins.values())
+
+
+def _returns(robot: softkin.Mechanism, axes: Axes) -> bool:
+    try:
+        frame, configuration = robot.forward(axes)
+        return bool(np.abs(np.subtract(robot.inverse(frame, configuration, axes), axes)).max() < 1e-8)
+    except KinematicsError as error:
+        assert error.status in (Status.IMPOSSIBLE, Status.UNREACHABLE)
+        return False
