@@ -8,7 +8,7 @@ import numpy as np
 import sympy as sp
 
 from derive.algebra import polynomial
-from derive.closure import all_angles, signs_of, with_fixed_angles
+from derive.closure import all_angles, signs_of, with_fixed_names
 from derive.forward import ASSEMBLY_SIGN, Forward
 from derive.mechanism import DescriptionError, Mechanism
 from derive.parameters import MIN_TYPE2_MARGIN
@@ -38,7 +38,7 @@ def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:
     flag = real(mechanism.assembly.parameter)
     chosen = first * (1 - 2 * flag)
     if mechanism.assembly.handedness != 1:
-        chosen = Select(sp.Gt(with_fixed_angles(mechanism, mechanism.assembly.handedness), 0), chosen, -chosen)
+        chosen = Select(sp.Gt(with_fixed_names(mechanism, mechanism.assembly.handedness), 0), chosen, -chosen)
     sign = Let(ASSEMBLY_SIGN, chosen, "assembly mode of this machine")
     margin = forward.slope.value / forward.slope.scale
     return Assembled(replace(forward, statements=(sign, *forward.statements)), margin)
@@ -48,7 +48,7 @@ def _orientation(mechanism: Mechanism, forward: Forward) -> int:
     """+1 where the sign of the slope is that of the indicator, -1 where it is the opposite."""
     assert mechanism.assembly is not None
     described = mechanism.assembly.indicator * mechanism.assembly.handedness
-    lets, (indicator,) = named_trigonometry(mechanism, [with_fixed_angles(mechanism, described)])
+    lets, (indicator,) = named_trigonometry(mechanism, [with_fixed_names(mechanism, described)])
     program = assemble("assembly", (*forward.statements, *lets), [Output("indicator", indicator)])
     machine = sample_machine(mechanism, 31)
     samples = {**machine, **sample_axes(mechanism, machine, _SAMPLES, 32)}
@@ -92,7 +92,7 @@ def bound_checks(mechanism: Mechanism, offset: bool) -> tuple[Statement, ...]:
     checks: list[Statement] = []
     for b in mechanism.bounds:
         value, largest = (
-            polynomial(with_fixed_angles(mechanism, v), all_angles(mechanism), signs_of(mechanism)).xreplace(seen)
+            polynomial(with_fixed_names(mechanism, v), all_angles(mechanism), signs_of(mechanism)).xreplace(seen)
             for v in (b.value, b.largest)
         )
         checks.append(Require(sp.Le(sp.Abs(value), largest), Status.UNREACHABLE, b.meaning))

@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 
 from derive.algebra import reduce_units
-from derive.closure import all_angles, with_fixed_angles
+from derive.closure import all_angles, with_fixed_names
 from derive.forward import Forward, derivation_at_axes
 from derive.inverse import Inverse
 from derive.mechanism import Branch, DescriptionError, Mechanism
@@ -86,7 +86,7 @@ def _signs(
     mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     lets, indicators = named_trigonometry(
-        mechanism, [with_fixed_angles(mechanism, b.indicator) * b.signs[0] for b in mechanism.branches]
+        mechanism, [with_fixed_names(mechanism, b.indicator) * b.signs[0] for b in mechanism.branches]
     )
     slopes = [s.value for s in inverse.derivation.slopes]
     named = [Let(real(f"sign_{k}"), v) for k, v in enumerate([*slopes, *indicators])]

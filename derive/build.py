@@ -11,7 +11,7 @@ from derive.assembling import Assembled, assembled, assembly_checks, bound_check
 from derive.branching import Assignment, assign, margin_lets, with_branch_signs
 from derive.carried import BASE_AXIS, FLANGE_AXIS, coupling_programs
 from derive.closure import flange_rotation, heading_of
-from derive.differential import Factor, jacobian_program, jacobian_rows, singularity_program, twist_program
+from derive.differential import Factor, factor_of, jacobian_program, jacobian_rows, singularity_program, twist_program
 from derive.edges import finite, joint_lets
 from derive.forward import (
     Forward,
@@ -54,7 +54,8 @@ def build(mechanism: Mechanism) -> Kinematics:
     at_axes = derivation_at_axes(mechanism, inverse, forward)
     margins = margin_lets(mechanism, assignments)
     jacobian = jacobian_program(mechanism, forward)
-    factors = [*(Factor(a.branch.margin, a.margin(mechanism)) for a in assignments), *_measures(inverse)]
+    slopes, measures = assignments, inverse.derivation.measures
+    factors = [*(factor_of(mechanism, a) for a in slopes), *(factor_of(mechanism, m) for m in measures)]
     if mechanism.assembly is not None and closed.margin is not None:
         factors.append(Factor(mechanism.assembly.margin, closed.margin))
     singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian)
@@ -178,10 +179,6 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     strangers = [s.name for s in program.inputs if s.name not in allowed]
     if strangers:
         raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
-
-
-def _measures(inverse: Inverse) -> list[Factor]:
-    return [Factor(m.name, m.value / m.scale) for m in inverse.derivation.measures]
 
 
 def _last(

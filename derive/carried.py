@@ -76,13 +76,15 @@ def _compatible(mechanism: Mechanism) -> Program:
     parts = carried_by(mechanism)
     across = [s - a * _ALONG for s, a in zip(parts.flange, FLANGE_AXIS, strict=True)]
     unmet = [s for k, s in enumerate(parts.tool) if k not in _MET[mechanism.task.turning]]
+    lengths = [p.symbol for p in mechanism.parameters if p.unit == "u"]
+    unnoticed = HELD * sp.Add(*map(sp.Abs, lengths))
     body: list[Statement] = []
     if any(parts.flange):
         body += [*finite(FLANGE_AXIS), *_along(parts), Let(real("flange_offset"), _size(across), _ACROSS)]
-        body.append(Require(sp.Le(real("flange_offset"), HELD), Status.INVALID_COUPLING))
+        body.append(Require(sp.Le(real("flange_offset"), unnoticed), Status.INVALID_COUPLING))
     for name, value, note in (("wrist_offset", parts.wrist, _BETWEEN), ("unmet_offset", _size(unmet), _UNMET)):
         if value != 0:
-            body += [Let(real(name), value, note), Require(sp.Le(real(name), HELD), Status.INVALID_COUPLING)]
+            body += [Let(real(name), value, note), Require(sp.Le(real(name), unnoticed), Status.INVALID_COUPLING)]
     return assemble("compatible", body, [])
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import sympy as sp
 
@@ -50,10 +51,27 @@ def fixed_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
     return tuple(p.symbol for p in mechanism.parameters if p.role is Role.ANGLE)
 
 
-def fixed_angle_lets(mechanism: Mechanism) -> tuple[Let, ...]:
-    """Their cosines and sines."""
+def fixed_lets(mechanism: Mechanism) -> tuple[Let, ...]:
+    """Their cosines and sines, and the roots that are made of parameters alone."""
     functions = ((cosine, sp.cos), (sine, sp.sin))
-    return tuple(Let(f(a), g(a * DEGREE)) for a in fixed_angles(mechanism) for f, g in functions)
+    angles = tuple(Let(f(a), g(a * DEGREE)) for a in fixed_angles(mechanism) for f, g in functions)
+    return (*angles, *(let for _, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters))))
+
+
+@cache
+def _fixed_roots(equations: tuple[sp.Expr, ...], parameters: tuple[sp.Symbol, ...]) -> tuple[tuple[sp.Expr, Let], ...]:
+    """The square roots in the equations that are made of parameters alone, inner ones first, each with its name.
+
+    What a name hides is not expanded: a difference of squares stays a product of lengths.
+    """
+    powers = {p for e in equations for p in sp.sympify(e).atoms(sp.Pow) if p.exp == sp.Rational(1, 2)}
+    roots = [r for r in powers if r.free_symbols and r.free_symbols <= set(parameters)]
+    found: list[tuple[sp.Expr, Let]] = []
+    for number, root in enumerate(sorted(roots, key=lambda r: (sp.count_ops(r), str(r))), 1):
+        radicand = sp.factor(root.base.xreplace({inner: let.name for inner, let in found}))
+        radicand = radicand.xreplace({s: real(s.name) for s in radicand.free_symbols})  # or it became a root of every factor
+        found.append((root, Let(real(f"fixed_length_{number}"), sp.sqrt(radicand), "a length of the machine")))
+    return tuple(found)
 
 
 def all_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
@@ -61,10 +79,13 @@ def all_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
     return (*angles_of(mechanism), *fixed_angles(mechanism))
 
 
-def with_fixed_angles(mechanism: Mechanism, expression: sp.Expr) -> sp.Expr:
-    """The expression with the sines and cosines of fixed angles under their names."""
+def with_fixed_names(mechanism: Mechanism, expression: sp.Expr) -> sp.Expr:
+    """The expression with the sines and cosines of fixed angles, and fixed roots, under their names."""
     functions = ((cosine, sp.cos), (sine, sp.sin))
-    return sp.sympify(expression).xreplace({g(a * DEGREE): f(a) for a in fixed_angles(mechanism) for f, g in functions})
+    table = {g(a * DEGREE): f(a) for a in fixed_angles(mechanism) for f, g in functions}
+    for root, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters)):
+        table[root] = let.name
+    return sp.sympify(expression).xreplace(table)
 
 
 def angles_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
@@ -209,7 +230,7 @@ def _rod_equation(
     lets: list[Let] = []
     total: sp.Expr = -(rod.length**2)
     for name, plate, base in zip(COORDINATE_NAMES, rod.plate, rod.base, strict=False):
-        between = with_fixed_angles(mechanism, (plate - base).xreplace(table))
+        between = with_fixed_names(mechanism, (plate - base).xreplace(table))
         form = polynomial(between, all_angles(mechanism), signs_of(mechanism))
         moving, known = split_known(form, unknown)
         side = 1 if word == "span" else -1  # a span is seen from the base, a pivot is where the rod is held
@@ -227,7 +248,7 @@ def _rod_scales(mechanism: Mechanism, rod: Rod) -> dict[sp.Symbol, sp.Expr]:
     scales: dict[sp.Symbol, sp.Expr] = {}
     for symbol in (*(j.symbol for j in mechanism.joints), *(real(c) for c in COORDINATE_NAMES)):
         rates = [sp.diff(p - b, symbol) for p, b in zip(rod.plate, rod.base, strict=True)]
-        square = polynomial(with_fixed_angles(mechanism, sum(r**2 for r in rates)), all_angles(mechanism), signs_of(mechanism))
+        square = polynomial(with_fixed_names(mechanism, sum(r**2 for r in rates)), all_angles(mechanism), signs_of(mechanism))
         if square != 0 and not square.free_symbols & set(_moving_symbols(mechanism)):
             scales[symbol] = 2 * rod.length * sp.sqrt(sp.factor(square))
     return scales
@@ -249,5 +270,5 @@ def _arguments(expressions: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
 
 
 def _equation(mechanism: Mechanism, label: str, expression: sp.Expr) -> Equation:
-    return Equation(label, polynomial(with_fixed_angles(mechanism, expression), all_angles(mechanism), signs_of(mechanism)))
+    return Equation(label, polynomial(with_fixed_names(mechanism, expression), all_angles(mechanism), signs_of(mechanism)))
 

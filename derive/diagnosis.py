@@ -125,6 +125,7 @@ class Reasons:
         least size, whatever signs the lengths have. Where a length occurs as its square alone, as the rod l in
         l^2 - x^2 - y^2, it would have to be so much longer or shorter.
         """
+        radicand = self._written_out(radicand)
         sums = [f for f in sp.Mul.make_args(radicand) if f.is_Add]
         if not sums:
             return None
@@ -134,12 +135,20 @@ class Reasons:
             whole = sp.Add(*sums) / 2
             return sp.Add(*[sp.Abs(f) / 2 for f in sums]) - whole.xreplace({s: sp.Abs(s) for s in self._signed(whole)})
         for rod in sorted({s for f in sums for s in f.free_symbols if s.name in self.lengths}, key=str):
-            signs = [f.coeff(rod, 2) for f in sums]
-            if all(s in (1, -1) and not (f - s * rod**2).has(rod) for s, f in zip(signs, sums, strict=True)):
+            signs = [sp.expand(f).coeff(rod, 2) for f in sums]
+            if all(s in (1, -1) and not sp.expand(f - s * rod**2).has(rod) for s, f in zip(signs, sums, strict=True)):
                 below = [-f if len(sums) == 1 else _below_zero(f) for f in sums]
                 needed = sp.Add(rod**2, *[s * b for s, b in zip(signs, below, strict=True)])
                 return sp.Abs(Root(needed) - rod)
         return None
+
+    def _written_out(self, radicand: sp.Expr) -> sp.Expr:
+        """The radicand with its factors, and then with the names that are products in them."""
+        table = {s: self.definitions[s] for s in sp.Mul.make_args(radicand) if s in self.definitions}
+        if not table or not all(v.is_Mul or v.is_Add for v in table.values()):
+            return radicand
+        radicand = radicand.xreplace(table)
+        return radicand.xreplace({s: v for s in radicand.free_symbols if (v := self.definitions.get(s, s)).is_Mul})
 
     def _signed(self, value: sp.Expr) -> set[sp.Symbol]:
         """The names in it of what may be negative."""

@@ -9,15 +9,17 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.closure import with_fixed_angles
+from derive.branching import Assignment
+from derive.closure import with_fixed_names
 from derive.forward import Forward
 from derive.frames import Chain, Motion
 from derive.kinematics import Margin
 from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, DescriptionError, Mechanism, Turning
-from derive.parameters import SCALE
+from derive.parameters import SCALE, has_length, machine_parameters
 from derive.passes import assemble
 from derive.platform import platform_jacobian
 from derive.pose import Screw, pose_of
+from derive.problem import Measure
 from derive.program import FREE_ANGLE, Let, Output, Program, Require, Select, Statement, Status, real
 from derive.run import run
 from derive.sampling import sample_axes, sample_machine
@@ -114,7 +116,7 @@ def _twist(screw: Screw, position: sp.ImmutableMatrix) -> sp.Matrix:
 
 def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]:
     """Stated equations: -A^-1 B with A = dΦ/dx, B = dΦ/dq, by the adjugate; singular where det A vanishes (type 2)."""
-    closure = sp.Matrix([with_fixed_angles(mechanism, e) for e in mechanism.equations])
+    closure = sp.Matrix([with_fixed_names(mechanism, e) for e in mechanism.equations])
     by_pose = closure.jacobian([real(c) for c in mechanism.task.position])
     by_joints = closure.jacobian([j.symbol for j in mechanism.joints])
     if by_pose.rows != by_pose.cols:
@@ -161,21 +163,47 @@ class Factor:
 
     name: str
     value: sp.Expr
+    is_length: bool = False
+    """Whether it has the user's unit, because the machine has no length to compare it with."""
+    is_signed: bool = True
+
+    @property
+    def lets(self) -> tuple[Let, ...]:
+        """The margin; of a length, whether it is more than what leaves an axis free."""
+        margin = real(f"margin_{self.name}")
+        if not self.is_length:
+            return (Let(margin, self.value),)
+        length = real(f"length_{self.name}")
+        other = Select(sp.Lt(length, -FREE_ANGLE), sp.Integer(-1), sp.Integer(0)) if self.is_signed else sp.Integer(0)
+        told = Select(sp.Gt(length, FREE_ANGLE), sp.Integer(1), other)
+        return Let(length, self.value), Let(margin, told, "1, and 0 where nothing determines the axis")
+
+
+def factor_of(mechanism: Mechanism, found: Assignment | Measure) -> Factor:
+    """The slope of a branch, or a measure, over its scale."""
+    has_unit = not has_length(machine_parameters(mechanism))
+    if isinstance(found, Assignment):
+        return Factor(found.branch.margin, found.margin(mechanism), has_unit and found.slope.scale.has(SCALE))
+    return Factor(found.name, found.value / found.scale, has_unit and found.scale.has(SCALE), is_signed=False)
 
 
 def singularity_program(
     mechanism: Mechanism, statements: Sequence[Statement], factors: Sequence[Factor], jacobian: Program
 ) -> tuple[Program, tuple[Margin, ...]]:
     """The margins that multiply to the determinant of the Jacobian, and their integer exponents."""
-    lets = [Let(real(f"margin_{f.name}"), f.value) for f in factors]
-    outputs = [Output(f.name, let.name) for f, let in zip(factors, lets, strict=True)]
+    lets = [let for f in factors for let in f.lets]
+    lengths = {f.name: Output(f"length_{f.name}", f.lets[0].name) for f in factors if f.is_length}
+    told = {f.name: Output(f.name, f.lets[-1].name) for f in factors}
+    outputs = [lengths.get(f.name, told[f.name]) for f in factors]
     if not mechanism.joints:
         return assemble("singularity", statements, []), ()
     draft = assemble("singularity", (*statements, *lets), outputs)
     exponents = _exponents(mechanism, draft, jacobian)
-    kept = [(o, e) for o, e in zip(draft.outputs, exponents, strict=True) if e != 0]
-    program = assemble("singularity", draft.body, [o for o, _ in kept])
-    return program, tuple(Margin(o.name, e, "type 1" if e > 0 else "type 2") for o, e in kept)
+    kept = [(f.name, e) for f, e in zip(factors, exponents, strict=True) if e != 0]
+    shown = [o for name, _ in kept for o in (told[name], *([lengths[name]] if name in lengths else []))]
+    program = assemble("singularity", (*statements, *lets), shown)
+    of_length = {name: output.name for name, output in lengths.items()}
+    return program, tuple(Margin(n, e, "type 1" if e > 0 else "type 2", of_length.get(n)) for n, e in kept)
 
 
 def _exponents(mechanism: Mechanism, margins: Program, jacobian: Program) -> list[int]:

@@ -12,7 +12,7 @@ from derive.closure import (
     OFFSET,
     all_angles,
     angles_of,
-    fixed_angle_lets,
+    fixed_lets,
     heading_of,
     position_closure,
     signs_of,
@@ -59,7 +59,7 @@ def pose_at_axes(mechanism: Mechanism) -> Forward:
     trigonometric = tuple(Let(f(a), g(a)) for a in joints for f, g in ((cosine, sp.cos), (sine, sp.sin)))
     derivation = _solve_for_position(mechanism)
     slope = derivation.slopes[0] if derivation.slopes else None
-    known = (*checks, *fixed_angle_lets(mechanism), *trigonometric, *_in_assembly_mode(derivation, mechanism))
+    known = (*checks, *fixed_lets(mechanism), *trigonometric, *_in_assembly_mode(derivation, mechanism))
     position_values = tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATE_NAMES)
     return Forward(known, position_values, tuple(sp.eye(3)), slope)
 

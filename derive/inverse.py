@@ -13,7 +13,7 @@ from derive.closure import (
     Closure,
     all_angles,
     closure_at,
-    fixed_angle_lets,
+    fixed_lets,
     flange_rotation,
     offset_closure,
     pose_closure,
@@ -55,7 +55,7 @@ def solve_pose(mechanism: Mechanism) -> Inverse:
     """Solve the closure of a commanded pose for the joints."""
     closure = pose_closure(mechanism)
     derivation = _solve(mechanism, closure, mechanism.joints)
-    naming = (*reference_lets(mechanism), *fixed_angle_lets(mechanism), *_heading(mechanism), *closure.lets)
+    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *_heading(mechanism), *closure.lets)
     return Inverse(closure, derivation, naming, mechanism.joints)
 
 
@@ -73,7 +73,7 @@ def solve_offset(mechanism: Mechanism) -> Inverse:
     closure = offset_closure(mechanism, moving)
     derivation = _solve(mechanism, closure, moving)
     kept = tuple(s for j in frozen for s in frozen_lets(j))
-    naming = (*reference_lets(mechanism), *fixed_angle_lets(mechanism), *kept, *closure.lets)
+    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *closure.lets)
     return Inverse(closure, derivation, naming, moving, frozen)
 
 

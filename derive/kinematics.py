@@ -37,6 +37,14 @@ class Margin:
     exponent: int
     kind: str
     """"type 1" (serial) or "type 2" (parallel)."""
+    length: str | None = None
+    """Of a machine without a length to compare with: the output that is the distance, in the user's unit. The margin itself
+    is then 1, or 0 where the distance leaves an axis free: a number without a unit, but none that tells how far it is."""
+
+    @property
+    def factor(self) -> str:
+        """The output that is a factor of sqrt(det(J^T J))."""
+        return self.length or self.name
 
 
 @dataclass(frozen=True)
@@ -78,7 +86,8 @@ class Kinematics:
     ranked           as branch, and `rank`: 0 for the solution nearest to the reference, 1 for the next; None where a branch of a
                      pose has one solution at most
     limits           axis_* → nothing; its conditions are the axis limits and the limits of coupled quantities
-    singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size
+    singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size; also the length of a
+                     margin that has one
     jacobian         axis_* → j11, j12, … (row, column from 1): rows are `rows`, columns the axes; per radian
     image            nothing → zero_r11…zero_r33, rot_x rot_y rot_z (base), u_x u_y u_z (flange): R·u = rot
     projection       r11…r33 → the same, projected to the nearest rotation the flange can have; None where not chosen

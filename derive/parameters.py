@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import sympy as sp
 
@@ -11,10 +11,27 @@ from derive.legs import SCALE as SCALE
 from derive.mechanism import Joint, Mechanism, Parameter, Role
 from derive.passes import bare
 from derive.platform import machine_constants, machine_statements
-from derive.program import LARGEST, LIMIT, ONE_TURN, UNLIMITED, Let, Output, Program, Require, Select, Statement, Status, real
+from derive.program import (
+    LARGEST,
+    LIMIT,
+    ONE_TURN,
+    TIE_SHARE,
+    UNLIMITED,
+    Let,
+    Output,
+    Program,
+    Require,
+    Select,
+    Statement,
+    Status,
+    real,
+)
 from derive.verify import verify
 
 CHECK_LIMITS = "check_limits"
+TIE_OF_LENGTHS = real("tie")
+"""What squared distances of linear axes tie within."""
+_LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
 
 
 def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
@@ -89,17 +106,29 @@ def setup_program(mechanism: Mechanism, parameters: tuple[Parameter, ...], hoist
     else:
         body.append(Let(SCALE, machine_scale(parameters), "a length of the machine"))
         outputs.append(Output(SCALE.name, SCALE))
+    if chooses_by_lengths(mechanism):
+        body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances closer than this are equal"))
+        outputs.append(Output(TIE_OF_LENGTHS.name, TIE_OF_LENGTHS))
     body += hoisted
     outputs += [*(Output(let.name.name, let.name) for let in hoisted)]
     inputs = tuple(real(p.name) for p in parameters)
     return verify(Program("setup", inputs, bare(body), tuple(outputs)))
 
 
-def machine_scale(parameters: Iterable[Parameter]) -> sp.Expr:
+def chooses_by_lengths(mechanism: Mechanism) -> bool:
+    """Whether linear axes alone tell which branch is nearest to the reference."""
+    return bool(mechanism.branches) and not any(j.is_angle for j in mechanism.joints)
+
+
+def machine_scale(parameters: Sequence[Parameter]) -> sp.Expr:
     """The sum of the lengths of the description; one user's unit where there is none."""
-    lengths = (Role.LENGTH, Role.SIGNED_LENGTH)
-    own = [p for p in parameters if p.role in lengths or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)]
-    return sp.Add(*[sp.Abs(p.symbol) for p in own]) if any(p.role in lengths for p in own) else sp.Integer(1)
+    own = [p for p in parameters if p.role in _LENGTHS or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)]
+    return sp.Add(*[sp.Abs(p.symbol) for p in own]) if has_length(parameters) else sp.Integer(1)
+
+
+def has_length(parameters: Iterable[Parameter]) -> bool:
+    """Whether a machine has a length that is never zero: what its other lengths can be compared with."""
+    return any(p.role in _LENGTHS for p in parameters)
 
 
 def _range_of(parameter: Parameter) -> tuple[Require, ...]:

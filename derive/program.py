@@ -47,7 +47,7 @@ LIMIT = sp.Float("1e-9")
 SHORTEST_LINK = sp.Float("1e-9")
 """An effective link shorter than this fraction of the machine's scale cannot be aimed."""
 HELD = sp.Float("1e-9")
-"""A shift up to this size (the user's unit) may turn with a flange unnoticed; and axes this far apart are one."""
+"""A shift up to this share of all shifts may turn with a flange unnoticed; and axes this far apart are one."""
 SINGULAR = sp.Float("1e-3")
 """A pose is singular where a margin is smaller than this in size."""
 PIVOT = sp.Float("1e-14")
@@ -69,7 +69,9 @@ REFINEMENTS = 100
 SCAN_PASSES = 1800
 """Trials of a search in all: the scan, and some thirty roots of other branches that are closed in on the way."""
 TIE = sp.Float("1e-6")
-"""An automatic choice takes a later branch only where its squared distance is smaller by more than this."""
+"""An automatic choice takes a later branch only where its squared distance (degrees) is smaller by more than this."""
+TIE_SHARE = sp.Float("1e-6")
+"""Of linear axes, only where it is smaller by more than the square of this share of the machine's scale."""
 ONE_TURN = sp.Integer(350)
 """An axis has one value inside its limits where they are at most this far apart (degrees): no step of a path crosses the gap."""
 EDGE = sp.Float("1e-9")

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from derive.algebra import cosine, sine
 from derive.branching import Assignment, assign, steps_and_rest, with_branch_signs
-from derive.closure import with_fixed_angles
+from derive.closure import with_fixed_names
 from derive.differential import jacobian_entries
 from derive.edges import free
 from derive.forward import Forward, derivation_at_axes, pose_at_axes
@@ -164,7 +164,7 @@ def _trial(both: Searching) -> Trial:
 def _indicators(both: Searching) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
     """What the branches that no step decides are asked by, and the sines and cosines in it."""
     lets, indicators = named_trigonometry(
-        both.mechanism, [with_fixed_angles(both.mechanism, b.indicator * b.signs[0]) for b in both.asked]
+        both.mechanism, [with_fixed_names(both.mechanism, b.indicator * b.signs[0]) for b in both.asked]
     )
     return tuple(lets), tuple(indicators)
 

@@ -13,6 +13,7 @@ from derive.kinematics import Kinematics
 from derive.legs import HOME_ROTATION
 from derive.mechanism import ROTATION_ENTRIES
 from derive.orthonormal import rotation_program
+from derive.parameters import TIE_OF_LENGTHS
 from derive.program import EDGE, FREE_ANGLE, TIE, Program, Status
 from derive.run import Array, evaluate, run
 from derive.selftest_cases import Bytes, Reals
@@ -70,7 +71,7 @@ def inverse(machine: Tested, frame: Reals, configuration: Bytes, reference: Real
     solved = [found for found, status in zip(solutions, statuses, strict=True) if status is Status.OK]
     if not solved:
         return statuses[0], nothing
-    chosen = _nearest(kinematics, solved, reference)
+    chosen = _nearest(machine, solved, reference)
     limits = _run(kinematics.limits, machine, _axes(machine, [chosen]))[1][0]
     return (Status.OK, chosen) if limits is Status.OK else (limits, nothing)
 
@@ -108,13 +109,14 @@ def margins(machine: Tested, poses: Sequence[Reals]) -> Array:
     return np.where(np.asarray(status == Status.OK, dtype=bool), np.stack(rows), np.nan)
 
 
-def _nearest(kinematics: Kinematics, solved: Sequence[Reals], reference: Reals) -> Reals:
+def _nearest(machine: Tested, solved: Sequence[Reals], reference: Reals) -> Reals:
     """The nearest solution: of equals, that of the lowest slot."""
+    kinematics, tie = machine.kinematics, float(machine.values.get(TIE_OF_LENGTHS.name, TIE))
     compared = [k for k, j in enumerate(kinematics.mechanism.joints) if j in kinematics.distance_joints]
     best, least = solved[0], np.inf
     for solution in solved:
         distance = sum((solution[k] - reference[k]) ** 2 for k in compared)
-        if distance < least - float(TIE):
+        if distance < least - tie:
             best, least = solution, distance
     return best
 

@@ -27,7 +27,7 @@ from derive.emit.st_selftest import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.st_selftest import test_of
 from derive.emit.st_uses import needed
 from derive.kinematics import Kinematics
-from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, SOLVABLE, TIE
+from derive.program import EDGE, FREE_ANGLE, HELD, LARGEST, PIVOT, SOLVABLE
 
 _FOLDER = "st"
 _SHARED = "softkin"
@@ -117,7 +117,6 @@ def _templates() -> Environment:
         pivot=literal(float(PIVOT)),
         solvable=literal(float(SOLVABLE)),
         smallest=literal(1.0 / float(SOLVABLE)),
-        tie=literal(float(TIE)),
         not_initialized=NOT_INITIALIZED,
         no_meaning=NO_MEANING,
     )

@@ -12,6 +12,7 @@ from derive.emit.st_names import capitalized, stored_name
 from derive.emit.st_program import Printed
 from derive.kinematics import Kinematics
 from derive.mechanism import Joint, Kind
+from derive.parameters import TIE_OF_LENGTHS, chooses_by_lengths
 from derive.program import SINGULAR, Program
 
 
@@ -159,6 +160,8 @@ def constants(kinematics: Kinematics) -> tuple[str, ...]:
     read = {symbol.name for program in programs_of(kinematics) for symbol in program.reads()}
     for joint in kinematics.mechanism.joints:
         read |= {f"{word}_{joint.key}" for word in ("unlimited", "lower", "upper")}
+    if chooses_by_lengths(kinematics.mechanism):
+        read.add(TIE_OF_LENGTHS.name)
     return tuple(o.name for o in kinematics.setup.outputs if o.name in read)
 
 

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 from derive.emit.st_block import Block
 from derive.emit.st_contract import Parameter, Signature
+from derive.emit.st_expression import literal
 from derive.emit.st_layout import indented, wrapped
-from derive.emit.st_names import joined
+from derive.emit.st_names import joined, stored_name
 from derive.kinematics import Kinematics
-from derive.program import Program
+from derive.parameters import TIE_OF_LENGTHS, chooses_by_lengths
+from derive.program import TIE, Program
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,8 @@ class BranchCall:
     """The lines of the condition under which a slot is solved."""
     distance: tuple[str, ...]
     """The lines that measure the distance to the reference."""
+    tie: str
+    """What squared distances tie within."""
 
 
 def branch_call(public: Signature, program: Program, kinematics: Kinematics, block: Block) -> BranchCall:
@@ -50,7 +54,8 @@ def branch_call(public: Signature, program: Program, kinematics: Kinematics, blo
     arguments += [Argument(joined(name), value) for name, value in inputs]
     method = "SolveOffsetBranch" if public.name.endswith("_Offset") else "SolveBranch"
     signature = Signature(method, public.returns, (axes, *constant, *numbers), "PRIVATE")
-    return BranchCall(method, signature, tuple(arguments), reads_matrix, _admitted(block), _distance(kinematics, block, read))
+    distance, tie = _distance(kinematics, block, read), _tie(kinematics)
+    return BranchCall(method, signature, tuple(arguments), reads_matrix, _admitted(block), distance, tie)
 
 
 def _open_inputs(kinematics: Kinematics, block: Block) -> Iterator[tuple[str, str]]:
@@ -63,6 +68,11 @@ def _open_inputs(kinematics: Kinematics, block: Block) -> Iterator[tuple[str, st
 def _admitted(block: Block) -> tuple[str, ...]:
     parts = [f"Softkin_AdmitsBranch(cd.abyData[{b.byte}], {b.choice})" for b in block.branches]
     return tuple(wrapped(f"IF {' AND '.join(parts)} THEN"))
+
+
+def _tie(kinematics: Kinematics) -> str:
+    lengths = chooses_by_lengths(kinematics.mechanism)
+    return stored_name(TIE_OF_LENGTHS.name) if lengths else literal(float(TIE))
 
 
 def _distance(kinematics: Kinematics, block: Block, read: set[str]) -> tuple[str, ...]:

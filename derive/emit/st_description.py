@@ -14,7 +14,7 @@ from derive.emit.st_block import Block
 from derive.emit.st_names import input_name, respelled
 from derive.kinematics import Kinematics
 from derive.mechanism import Kind, Role
-from derive.program import EXACT_ROTATION, ONE_TURN, ROTATION
+from derive.program import EXACT_ROTATION, FREE_ANGLE, ONE_TURN, ROTATION
 
 _WIDTH = 100
 _MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
@@ -40,6 +40,10 @@ _KINDS = {
     (False, False): "Kinematics for a SoftMotion axis group. ",
 }
 """By whether it is a position kinematics, and whether an orientation kinematics."""
+_WITHOUT_LENGTH = (
+    f"where an axis is free: within {float(FREE_ANGLE):g} of your unit of length. The machine has no length that a distance from "
+    "there could be compared with: its margin is 1 elsewhere, and IsSingularity gives no warning before"
+)
 _AUTOMATIC = (
     "Automatic bytes take the solution nearest to the reference. They are meant for point-to-point movements; "
     "limits refuse a solution, they never choose another one."
@@ -105,7 +109,8 @@ def _singularities(kinematics: Kinematics) -> Iterator[str]:
     if not kinematics.margins:
         yield "None."
     for margin in kinematics.margins:
-        yield from _item(f"{margin.name} ({margin.kind}): where its margin, a number without a unit, is 0.")
+        what = "where its margin, a number without a unit, is 0" if margin.length is None else _WITHOUT_LENGTH
+        yield from _item(f"{margin.name} ({margin.kind}): {what}.")
 
 
 def _workspace(kinematics: Kinematics) -> Iterator[str]:

@@ -36,6 +36,10 @@ class Naming:
             return sign * self._bind(real(f"{word}_{name_of(terms)}"), sp.expand(sign * value), note)
         return self._bind(real(_portable(proposal)), value, note)
 
+    def product(self, value: sp.Expr, proposal: str, note: str = "") -> sp.Expr:
+        """The name of a product of lengths, in the signs it has."""
+        return self._bind(real(_portable(proposal)), value, note)
+
     def length(self, proposal: str, *sides: sp.Expr, note: str = "") -> sp.Expr:
         """The name of the root of the sum of squares."""
         return self._bind(real(proposal), Root(sp.Add(*[side**2 for side in sides])), note)

@@ -52,7 +52,7 @@ def _sphere(problem: Problem, equation: Equation) -> Sphere | None:
         return None
     centre = sp.Matrix([sp.cancel(-poly.coeff_monomial(u) / (2 * scale)) for u in unknowns])
     constant = poly.coeff_monomial(1) / scale
-    return Sphere(centre, sp.factor(sp.expand(centre.dot(centre) - constant)))
+    return Sphere(centre, sp.factor(problem.tidy(centre.dot(centre) - constant)))
 
 
 def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ...]) -> Binding:
@@ -61,16 +61,15 @@ def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ..
     centres = [_named(statements, s.centre, f"centre_{k}", unknowns) for k, s in enumerate(found, 1)]
     apart = [_named(statements, c - centres[0], f"apart_{k}", unknowns) for k, c in enumerate(centres[1:], 2)]
     sigma = real("sigma_assembly")
-    if len(unknowns) == 2:
-        parts = _circles(statements, found, apart[0])
-    else:
-        parts = _three(statements, found, apart)
-    foot, normal, normal_square = parts
+    parts = _circles(statements, found, apart[0]) if len(unknowns) == 2 else _three(statements, found, apart)
+    foot, normal, normal_square, height_square = parts
     foot = _named(statements, foot, "foot", unknowns)
     height = real("height_square")
     length_scale = _length(found[0].radius_square)
+    if height_square is None:
+        height_square = found[0].radius_square - foot.dot(foot)
     statements += [
-        Let(height, found[0].radius_square - foot.dot(foot), "the square of the height over the centres"),
+        Let(height, height_square, "the square of the height over the centres"),
         Require(sp.Ge(height, -BOUNDARY * length_scale**2), Status.IMPOSSIBLE, "the rods do not meet"),
         Let(real("rise"), sigma * Root(height / normal_square)),
     ]
@@ -84,17 +83,22 @@ def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ..
     return Binding("spheres", unknowns, tuple(statements), slope)
 
 
-Parts = tuple[sp.Matrix, sp.Matrix, sp.Expr]
+Parts = tuple[sp.Matrix, sp.Matrix, sp.Expr, sp.Expr | None]
+"""Foot, normal, the square of the normal, and of the height where it is known better than from the foot."""
 
 
 def _circles(statements: list[Statement], found: tuple[Sphere, ...], apart: sp.Matrix) -> Parts:
-    """Foot and normal for two circles: the normal is `apart` turned a quarter to the left."""
+    """Two circles: the normal is `apart` turned a quarter to the left. The height is Heron's, its factors as they are."""
     square = _normal_square(statements, apart.dot(apart), found)
-    along = real("along_centres")
-    first, second = found[0].radius_square, found[1].radius_square
-    statements.append(Let(along, (first - second + apart.dot(apart)) / (2 * square), "foot of the height, as a share"))
+    between, along = real("between_centres"), real("along_centres")
+    first, second = (_named_length(statements, _length(f.radius_square), f"radius_{k}") for k, f in enumerate(found, 1))
+    statements += [
+        Let(between, Root(square)),
+        Let(along, ((first - second) * (first + second) + square) / (2 * square), "foot of the height, as a share"),
+    ]
     normal = sp.Matrix([-apart[1], apart[0]])
-    return along * apart, normal, square
+    sides = (first + second - between, between + first - second, between + second - first, between + first + second)
+    return along * apart, normal, square, sp.Mul(*sides) / (4 * square)
 
 
 def _three(statements: list[Statement], found: tuple[Sphere, ...], apart: list[sp.Matrix]) -> Parts:
@@ -109,7 +113,7 @@ def _three(statements: list[Statement], found: tuple[Sphere, ...], apart: list[s
         statements.append(Let(share, value, f"how far centre {k} draws the foot"))
         shares.append(share)
     foot = (shares[0] * v.cross(normal) + shares[1] * normal.cross(u)) / square
-    return foot, normal, square
+    return foot, normal, square, None
 
 
 def _normal_square(statements: list[Statement], value: sp.Expr, found: tuple[Sphere, ...]) -> sp.Symbol:
@@ -133,6 +137,14 @@ def _named(statements: list[Statement], vector: sp.Matrix, name: str, unknowns: 
             value = symbol
         entries.append(value)
     return sp.Matrix(entries)
+
+
+def _named_length(statements: list[Statement], value: sp.Expr, name: str) -> sp.Expr:
+    """The value, under a name where it is not one."""
+    if not is_compound(value):
+        return value
+    statements.append(Let(real(name), value))
+    return real(name)
 
 
 def _length(square: sp.Expr) -> sp.Expr:

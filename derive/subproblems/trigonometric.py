@@ -1,7 +1,8 @@
 """Trigonometric:  a cos u + b sin u = e.
 
 Two roots. With h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h:
-cos u = (a C - b S) / h,  sin u = (b C + a S) / h. The radicand stays a product: expanded it loses half the digits.
+cos u = (a C - b S) / h,  sin u = (b C + a S) / h. The two factors stay products: expanded they lose half the digits. C and
+S come from these factors alone, tan^2 of half the angle is their ratio: so C^2 + S^2 = 1 to rounding, whatever e has lost.
 Slope a sin u - b cos u = h S: sigma is its sign. Guard: |e| <= h, else there is no solution; where they are
 equal both roots meet (degenerate case). An h that can vanish is refused below 1e-9 of the length it is
 compared with: nothing can be aimed then.
@@ -14,7 +15,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.algebra import cosine, linear_coefficients, sine
+from derive.algebra import cosine, linear_coefficients, reduce_units, sine
 from derive.problem import Binding, Equation, Problem, Slope
 from derive.program import BOUNDARY, SHORTEST_LINK, Let, Require, Root, Select, Statement, Status, real
 from derive.subproblems.lateral import aimed_at_point
@@ -57,6 +58,10 @@ class _Amplitude:
     right: sp.Expr
     slope: sp.Expr
     slope_scale: sp.Expr
+    factors: tuple[sp.Expr, sp.Expr] | None = None
+    """h - e and h + e, where they are known better than by what they say."""
+    is_signed: bool = False
+    """Whether h may be negative."""
 
 
 def _amplitude(
@@ -70,44 +75,107 @@ def _amplitude(
         size = sp.sqrt(along**2 + across**2)
         return _Amplitude(naming, common * size, (), along / size, across / size, e, slope, common * size)
     if across == 0 and problem.is_never_zero(along):  # of either sign: sigma is then the sign of the sine
-        return _Amplitude(naming, common * along, (), sp.Integer(1), sp.Integer(0), e, sine(angle), sp.Integer(1))
+        length, one = common * along, sp.Integer(1)
+        return _Amplitude(naming, length, (), one, sp.Integer(0), e, sine(angle), one, is_signed=not length.is_positive)
+    square = along**2 + across**2
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
     effective = naming.length(f"effective_{angle.name}", along, across, note="effective length that the angle turns")
-    right = e.subs(along**2, effective**2 - across**2) if along.is_Symbol else e
     if problem.is_never_zero(along**2 + across**2):
+        right, factors = _law_of_cosines(problem, naming, angle, e, (common, square, effective))
         length = common * effective
-        return _Amplitude(naming, length, (), along / effective, across / effective, sp.expand(right), slope, length)
+        return _Amplitude(naming, length, (), along / effective, across / effective, right, slope, length, factors)
     aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
     divisor = real(f"divisor_{angle.name}")
     guard = (
         Require(aimable, Status.UNREACHABLE, f"{angle.name}: its effective length is too short"),
         Let(divisor, Select(aimable, effective, sp.Integer(1))),
     )
-    right = e
-    if along.is_Symbol:
-        right = sp.expand(e.subs(along**2, divisor**2 - across**2))
+    right, factors = _law_of_cosines(problem, naming, angle, e, (common, square, divisor))
     return _Amplitude(
         naming, common * divisor, guard, along / divisor, across / divisor, right, slope,
-        equation.scales.get(angle, common * problem.scale),
+        equation.scales.get(angle, common * problem.scale), factors,
     )
+
+
+def _law_of_cosines(
+    problem: Problem, naming: Naming, angle: sp.Symbol, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, sp.Expr]
+) -> tuple[sp.Expr, tuple[sp.Expr, sp.Expr] | None]:
+    """e, h - e and h + e, where these are M - (D - k)^2 and (D + k)^2 - M or the reverse: h = 2 k D.
+
+    D is a multiple of the effective length, k the arm that turns, and M the square of the third side of their triangle.
+    Written out, the terms of D^2 and of M are far larger than what they add up to where the lengths of a machine differ.
+    """
+    common, square, effective = turned
+    number, arm = common.as_coeff_Mul()
+    whole = reduce_units(right, problem.units, problem.signs)
+    share = whole.as_coefficients_dict()[sp.expand(arm**2)]
+    ratio = number / (2 * sp.sqrt(abs(share)))
+    if share == 0 or not ratio.is_rational:
+        return right, None
+    sense, distance, side = sp.sign(share), ratio * effective, sp.sqrt(abs(share)) * arm
+    third = reduce_units(ratio**2 * square + side**2 - sense * whole, problem.units, problem.signs)
+    factored = _factored(_with_units(problem, third))
+    if not (factored.is_Mul or factored.is_Pow) and len(sp.Add.make_args(third)) >= len(sp.Add.make_args(whole)):
+        return right, None
+    third = factored
+    if not _is_square(third):
+        third = naming.product(_positive(third), f"third_square_{angle.name}", "square of the third side")
+    less, more = third - (distance - side) ** 2, (distance + side) ** 2 - third
+    if _is_square(third):
+        less, more = _product(less), _product(more)
+    right = sp.expand(sense * (distance**2 + side**2 - third))
+    return right, (less, more) if sense > 0 else (more, less)
+
+
+def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
+    """A normal form with cos^2 + sin^2 of known angles put back where it was one, so that squares can be seen in it.
+
+    p^2 - (p cos u + q sin u)^2 is, in normal form, p^2 - p^2 cos^2 u - ... with 1 - cos^2 u for sin^2 u: with p^2 (cos^2 u +
+    sin^2 u) for its first term it is (p sin u - q cos u)^2.
+    """
+    for angle in problem.units:
+        functions = {cosine(angle), sine(angle)}
+        terms = sp.Add.make_args(sp.expand(value))
+        turned = [t for t in terms if t.free_symbols & functions]
+        seen = {s for t in turned for s in t.free_symbols} - functions
+        unit = cosine(angle) ** 2 + sine(angle) ** 2
+        value = sp.expand(sp.Add(*turned, *(t * unit if t.free_symbols & seen else t for t in terms if t not in turned)))
+    return value
+
+
+def _factored(value: sp.Expr) -> sp.Expr:
+    """In factors, over the roots of numbers that occur."""
+    roots = [r for r in value.atoms(sp.Pow) if r.is_number and not r.is_rational]
+    return sp.factor(value, extension=roots) if roots else sp.factor(value)
+
+
+def _is_square(value: sp.Expr) -> bool:
+    """Whether a value is the square of a rational expression."""
+    return all(f.as_base_exp()[1] % 2 == 0 or (f.is_number and f.is_positive) for f in sp.Mul.make_args(value))
 
 
 def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _Amplitude) -> Binding:
     sigma = real(f"sigma_{angle.name}")
     turned = (amplitude.cos_unit, amplitude.sin_unit) != (1, 0)
-    scale = real(f"swing_scale_{angle.name}" if turned else f"scale_{angle.name}")
-    square = real(f"sine_square_{angle.name}")
+    words = ("swing_scale" if turned else "scale", "below", "above", "product", "both", "sum")
+    scale, below, above, product, both, total = (real(f"{word}_{angle.name}") for word in words)
     cos_name = real(f"cos_swing_{angle.name}") if turned else cosine(angle)
     sin_name = real(f"sin_swing_{angle.name}") if turned else sine(angle)
     length, right = amplitude.length, amplitude.right
+    size = sp.Abs if amplitude.is_signed else sp.Add
+    less, more = amplitude.factors or (_product(length - right), _product(length + right))
     statements: list[Statement] = [
         *amplitude.naming.lets,
         *amplitude.guard,
         Let(scale, length, f"{angle.name}: law of cosines in the {equation.label} equation"),
-        Let(square, _product(length - right) * _product(length + right) / scale**2, "kept as a product"),
-        Require(sp.Ge(square, -BOUNDARY), Status.UNREACHABLE, f"{angle.name}: out of reach"),
-        Let(cos_name, right / scale),
-        Let(sin_name, sigma * Root(square)),
+        Let(below, less, "zero where it is stretched or folded"),
+        Let(above, more, "zero where it is the other"),
+        Let(product, below * above),
+        Require(sp.Ge(product, -BOUNDARY * scale**2), Status.UNREACHABLE, f"{angle.name}: out of reach"),
+        Let(both, below + above, "twice the scale, with the rounding of its parts"),
+        Let(total, Select(sp.Gt(size(both), 0), both, sp.Integer(1))),
+        Let(cos_name, (above - below) / total),
+        Let(sin_name, 2 * sigma * Root(product) / size(total)),
     ]
     if turned:
         statements += [
@@ -119,8 +187,12 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
 
 
 def _product(value: sp.Expr) -> sp.Expr:
-    """Factored, with a leading minus inside the factor that has most of them: it reads as lengths compared."""
-    factored = sp.factor(value)
+    """Factored: it reads as lengths compared."""
+    return _positive(sp.factor(value))
+
+
+def _positive(factored: sp.Expr) -> sp.Expr:
+    """Factors with a leading minus inside the one that has most of them."""
     factors = list(sp.Mul.make_args(factored))
     sums = [f for f in factors if f.is_Add]
     if -1 not in factors or not sums:

@@ -48,6 +48,21 @@ def displacement(closure: Closure, samples: Samples, joints: Array) -> Array:
     return np.asarray(np.linalg.norm((np.linalg.pinv(scaled) @ closure.residual(*state))[:, :, 0], axis=1))
 
 
+def least_move(kin: Kinematics, closure: Closure, samples: Samples, joints: Array) -> Array:
+    """How far the pose, and of a loop the joints with it, would have to move to close Φ: |[A B]⁺ Φ|.
+
+    Of the many solutions of a loop some are next to a type 2 singularity: there the pose alone would have to go far for what
+    is the last digit of a joint.
+    """
+    if kin.mechanism.chain is not None:
+        return displacement(closure, samples, joints)
+    state = (joints, samples.pose, samples.parameters)
+    by_pose = closure.by_pose(*state) * closure.row_scale(samples.reach)[:, None, :]
+    by_joints = closure.by_joints(*state) * closure.joint_scale(samples.reach)[:, None, :]
+    both = np.concatenate([by_pose, by_joints], axis=2)
+    return np.asarray(np.linalg.norm((np.linalg.pinv(both) @ closure.residual(*state))[:, :, 0], axis=1))
+
+
 def check_forward(kin: Kinematics, closure: Closure, samples: Samples) -> float:
     """Forward kinematics closes Φ and gives the whole frame; `orientation` gives the same rotation."""
     frame = closure.frame(samples.joints, samples.parameters)[:, :, 0]
@@ -90,7 +105,7 @@ def check_margins(kin: Kinematics, closure: Closure, samples: Samples) -> float:
     outputs = run_regular(kin, kin.singularity, samples)
     expected = np.ones(len(samples))
     for margin in kin.margins:
-        expected = expected * np.abs(outputs[margin.name]) ** margin.exponent
+        expected = expected * np.abs(outputs[margin.factor]) ** margin.exponent
     j = samples.jacobian if samples.jacobian.shape[1] <= samples.jacobian.shape[2] else np.swapaxes(samples.jacobian, 1, 2)
     ratio = np.sqrt(np.linalg.det(j @ np.swapaxes(j, 1, 2))) / expected
     constant = {m: np.median(ratio[samples.machine == m]) for m in np.unique(samples.machine)}

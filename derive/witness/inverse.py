@@ -12,7 +12,7 @@ from derive.kinematics import Kinematics
 from derive.program import Program, Status
 from derive.run import Array, run
 from derive.search import RANK
-from derive.witness.checks import CLEAR, CLOSURE_TOLERANCE, displacement, worst
+from derive.witness.checks import CLEAR, CLOSURE_TOLERANCE, least_move, worst
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.roots import Problem, all_solutions, distinct, problem_at, same, within_one_turn
@@ -40,7 +40,8 @@ def check_inverse(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[
             continue
         part = samples.take(chosen)
         joints = closure.joints(axes[slot, chosen], part.parameters)[:, :, 0]
-        residual = max(residual, worst(kin, "inverse kinematics", displacement(closure, part, joints), part, CLOSURE_TOLERANCE))
+        errors = least_move(kin, closure, part, joints)
+        residual = max(residual, worst(kin, "inverse kinematics", errors, part, CLOSURE_TOLERANCE))
         indicators = closure.indicators(joints, part.pose, part.parameters)[:, :, 0]
         if (indicators * signs <= 0).any():
             place = describe(kin, part, int(np.argmax(np.any(indicators * signs <= 0, axis=1))))
@@ -172,7 +173,7 @@ def _compare(kin: Kinematics, problem: Problem, solutions: tuple[Array, Array], 
 
 def _point_error(kin: Kinematics, closure: Closure, samples: Samples, joints: Array, point: Array, offset: Array) -> Array:
     if kin.mechanism.chain is None:  # the flange keeps its orientation: the offset only shifts the pose
-        return displacement(closure, samples, joints)
+        return least_move(kin, closure, samples, joints)
     frame = closure.frame(joints, samples.parameters)[:, :, 0]
     reached = frame[:, :3] + (frame[:, 3:].reshape(-1, 3, 3) @ offset[:, :, None])[:, :, 0]
     return np.asarray(np.linalg.norm(reached - point, axis=1) / samples.reach)

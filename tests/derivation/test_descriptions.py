@@ -118,7 +118,7 @@ def test_the_margins_multiply_to_the_determinant(name: str) -> None:
     axes, own = axes_of(name, seed=4), built(name)
     margins, _ = own.run(own.kinematics.singularity, axes)
     volume = np.abs(np.linalg.det(own.jacobian(axes)))
-    expected = np.prod([np.abs(margins[m.name]) ** m.exponent for m in own.kinematics.margins] or [np.ones(COUNT)], axis=0)
+    expected = np.prod([np.abs(margins[m.factor]) ** m.exponent for m in own.kinematics.margins] or [np.ones(COUNT)], axis=0)
     ratio = volume / expected
     assert np.ptp(ratio) <= 1e-9 * np.abs(ratio).max()
     assert all(np.abs(margins[m.name]).max() > 0.1 for m in own.kinematics.margins)

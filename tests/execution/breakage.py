@@ -120,6 +120,8 @@ WRONG = {
     "GetKinematicsName: a name": Break("METHOD PUBLIC GetKinematicsName", "'Kin_Scara4_ZCcoupled'", "'Kin_Scara4'"),
     "GetPeriods: an axis": Break("METHOD PUBLIC GetPeriods", "aPeriods[3]", "aPeriods[2]"),
     "CPConnectible: anything": Break("METHOD PUBLIC CPConnectible", "CPConnectible := (", "CPConnectible := TRUE OR ("),
-    "CartesianToAxes: a constant of the machine": Break(_INITIALIZE, "scaleA2 := 2.0*", "scaleA2 := 3.0*"),
+    "CartesianToAxes: a constant of the machine": Break(
+        _INITIALIZE, "linkLength2 := dLinkLength2;", "linkLength2 := 1.01*dLinkLength2;"
+    ),
 }
 """The method that then answers otherwise, and what is wrong."""

@@ -7,12 +7,23 @@ from itertools import combinations
 import numpy as np
 from softkin import Status
 
+from derive.mechanism import Role
 from tests.mechanisms.closure import Array
-from tests.mechanisms.machines import Machine
+from tests.mechanisms.machines import LENGTHS, Machine
 from tests.mechanisms.test_round_trip import slots
 
-TIE = 1e-6
-"""Square degrees: below this two distances are equal."""
+SQUARE_DEGREES = 1e-6
+"""Below this two squared distances of rotary axes are equal."""
+SHARE = 1e-6
+"""Of the machine's scale: below the square of this length two squared distances of linear axes are equal."""
+
+
+def tie_of(machine: Machine) -> float:
+    """What squared distances tie within."""
+    if machine.closure.angles.any():
+        return SQUARE_DEGREES
+    lengths = [p for p in machine.mechanism.parameters if p.role in LENGTHS or (p.role is Role.DISTANCE and p.low >= 0.0)]
+    return (SHARE * sum(abs(machine.robot.parameters[p.name]) for p in lengths)) ** 2
 
 
 def squared(machine: Machine, axes: Array, references: Array) -> Array:
@@ -65,6 +76,7 @@ def test_an_open_branch_is_the_nearest(machines: tuple[Machine, ...]) -> None:
 def test_a_tie_goes_to_the_lowest_slot(machines: tuple[Machine, ...]) -> None:
     """Half-way between two slots, and less than the tie's width off it, slot 0 answers; beyond it the nearer one."""
     for machine in machines:
+        tie = tie_of(machine)
         axes = machine.draw(200, np.random.default_rng(3))
         frames = machine.closure.poses(axes)
         answers = by_slot(machine, frames, axes)
@@ -76,10 +88,10 @@ def test_a_tie_goes_to_the_lowest_slot(machines: tuple[Machine, ...]) -> None:
             at_middle = by_slot(machine, frames, np.nan_to_num(middle))
             same = (np.abs(at_middle[low] - first).max(axis=1) < 1e-9) & (np.abs(at_middle[high] - second).max(axis=1) < 1e-9)
             away = np.nan_to_num([squared(machine, a, middle) for a in at_middle], nan=np.inf)
-            same &= (away >= away[low] - TIE / 10).all(axis=0) & ((away < away[low] + 10 * TIE).sum(axis=0) == 2)
+            same &= (away >= away[low] - tie / 10).all(axis=0) & ((away < away[low] + 10 * tie).sum(axis=0) == 2)
             seen |= same
             # shifted by s towards the second slot, the squared distances differ by 2 * s * width
-            for excess, chosen in ((0.0, first), (0.5 * TIE, first), (3 * TIE, second), (-3 * TIE, first)):
+            for excess, chosen in ((0.0, first), (0.5 * tie, first), (3 * tie, second), (-3 * tie, first)):
                 references = (middle + towards * (excess / (2 * width))[:, None])[same]
                 found = _automatic(machine, (frames[0][same], frames[1][same]), references)
                 assert np.abs(found - chosen[same]).max(initial=0.0) < 1e-9

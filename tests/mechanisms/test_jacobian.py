@@ -33,10 +33,22 @@ def margins(machine: Machine, axes: Array) -> Array:
     return np.array([[m[name] for name in machine.robot.MARGINS] for m in found])
 
 
+def factors(machine: Machine, axes: Array) -> Array:
+    """The margins; a machine without lengths says 1 of a distance, and the distance itself is the factor."""
+    found = margins(machine, axes)
+    joints = machine.closure.joints(axes)
+    for column, name in enumerate(machine.robot.MARGINS):
+        if name.startswith("free") and (found[:, column] == 1.0).all():
+            positive = set(machine.mechanism.positive)
+            (place,) = (i for i, j in enumerate(machine.mechanism.joints) if not j.is_angle and j.symbol in positive)
+            found[:, column] = joints[:, place]
+    return found
+
+
 def exponents(machine: Machine, axes: Array) -> Array:
     """How often each margin is a factor of the determinant: log |det J| = c + sum of e log |margin|."""
     determinants = np.abs(np.linalg.det(scaled(machine, jacobians(machine, axes))))
-    design = np.hstack([np.log(np.abs(margins(machine, axes))), np.ones((len(axes), 1))])
+    design = np.hstack([np.log(np.abs(factors(machine, axes))), np.ones((len(axes), 1))])
     return np.linalg.lstsq(design, np.log(determinants), rcond=None)[0][:-1]
 
 
@@ -81,7 +93,7 @@ def test_the_determinant_is_the_product_of_the_margins(machines: tuple[Machine, 
         assert np.abs(found - whole).max(initial=0.0) < 1e-8
         expected = [-1.0 if _is_type_2(machine, name) else 1.0 for name in machine.robot.MARGINS]
         assert (np.sign(whole) == expected).all()
-        products = np.prod(margins(machine, axes) ** whole, axis=1)
+        products = np.prod(factors(machine, axes) ** whole, axis=1)
         ratio = np.linalg.det(scaled(machine, jacobians(machine, axes))) / products
         assert np.ptp(ratio) < 1e-9 * np.abs(ratio[0])
 

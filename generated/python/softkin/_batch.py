@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from softkin._array import Array, Codes, Programs, Real, Reals, Rotation, StartedPrograms, Truth, Vector, select
 from softkin._array_rotation import made_rotations
 from softkin._columns import Bytes, Configurations, Mask, Poses, Rows, Table, columns, configurations
-from softkin._configuration import AUTOMATIC, COINCIDE, COINCIDENT, EDGE, FIRST, SECOND, TIE, slots
+from softkin._configuration import AUTOMATIC, COINCIDE, COINCIDENT, EDGE, FIRST, SECOND, slots
 from softkin._table import numbers, whole_numbers
 from softkin._types import Status
 
@@ -174,22 +174,37 @@ class _Best:
     """The axes of every row on the nearest slot so far, and its status: that of its first slot where there are none."""
 
     def __init__(self, robot: Mechanism, poses: Poses) -> None:
-        self.near = [(i, poses.reference[i]) for i in robot.DISTANCE_AXES]
-        self.are_numbers: Truth = True
-        for _, value in self.near:
-            self.are_numbers = self.are_numbers & (np.abs(value) <= 1e9)
+        self.criteria = robot._criteria
+        self.reference = poses.reference
         self.axes: list[Real] = [np.nan for _ in robot.AXES]
         self.status = np.full(poses.count, _UNTRIED, np.uint8)
-        self.least = np.full(poses.count, np.inf)
+        self.least = [np.full(poses.count, np.inf) for _ in self.criteria]
 
     def take(self, axes: Reals, outcome: Codes, allowed: Mask) -> None:
         """Try a slot for the rows that allow it."""
-        distance = sum(((axes[i] - value) ** 2 for i, value in self.near), np.zeros(len(outcome)))
-        distance = select(self.are_numbers, distance, 0.0)
-        is_better = allowed & (outcome == Status.OK) & ((self.status != Status.OK) | (distance < self.least - TIE))
+        distances = [self._distance(axes, criterion.axes, len(outcome)) for criterion in self.criteria]
+        is_better = allowed & (outcome == Status.OK) & ((self.status != Status.OK) | self._are_nearer(distances))
         self.status = np.where(is_better | (allowed & (self.status == _UNTRIED)), outcome, self.status)
-        self.least = np.where(is_better, distance, self.least)
+        self.least = [np.where(is_better, own, least) for own, least in zip(distances, self.least, strict=True)]
         self.axes = [np.where(is_better, new, old) for new, old in zip(axes, self.axes, strict=True)]
+
+    def _distance(self, axes: Reals, counted: tuple[int, ...], rows: int) -> Array:
+        """As `squared_distance` on plain numbers."""
+        are_numbers: Truth = True
+        total = np.zeros(rows)
+        for i in counted:
+            are_numbers = are_numbers & (np.abs(self.reference[i]) <= 1e9)
+            total = total + (axes[i] - self.reference[i]) ** 2
+        return np.where(are_numbers, total, 0.0)
+
+    def _are_nearer(self, distances: list[Array]) -> Mask:
+        """The rows whose distance by a criterion is less, where those before it tie."""
+        nearer, undecided = np.zeros(self.status.shape, bool), np.ones(self.status.shape, bool)
+        for own, least, criterion in zip(distances, self.least, self.criteria, strict=True):
+            is_less = own < least - criterion.tie
+            nearer |= undecided & is_less
+            undecided &= ~is_less & ~(least < own - criterion.tie)
+        return nearer
 
 
 def _branch_bytes(measure: Real) -> NDArray[np.int64]:

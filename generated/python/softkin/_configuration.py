@@ -6,7 +6,7 @@ from __future__ import annotations
 from functools import cache
 from itertools import product
 from math import floor
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from softkin._scalar import nearest_period
 from softkin._types import Configuration, KinematicsError, Reals, Status
@@ -21,7 +21,16 @@ EDGE = 1e-9
 FIRST_TURN, SECOND_TURN = -180.0 - EDGE, 180.0 - EDGE
 """Where the turn of number 1 begins, and the next one (degrees)."""
 TIE = 1e-6
-"""An automatic choice takes a later slot only where its squared distance is smaller by more than this."""
+"""An automatic choice takes a later slot only where its squared distance (degrees) is smaller by more than this."""
+
+
+class Criterion(NamedTuple):
+    """Axes whose squared distance from the reference decides an automatic choice."""
+
+    axes: tuple[int, ...]
+    """By index: all in degrees, or all in the user's length unit."""
+    tie: float
+    """Squared distances closer than this are equal: then the lower slot is taken."""
 
 
 Slot: TypeAlias = tuple[Configuration, Reals]

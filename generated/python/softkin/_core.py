@@ -14,6 +14,7 @@ from softkin._configuration import (
     FIRST_TURN,
     SECOND_TURN,
     TIE,
+    Criterion,
     Slot,
     branch_byte,
     period,
@@ -406,12 +407,24 @@ class Mechanism(ABC):
             return found[0]
         best = answers[0]
         for axes in answers[1:]:
-            if self._distance(axes, near) < self._distance(best, near) - TIE:
+            if self._is_nearer(axes, best, near):
                 best = axes
         return best
 
-    def _distance(self, axes: Reals, near: Reals) -> float:
-        return squared_distance(axes, near, self.DISTANCE_AXES)
+    @property
+    def _criteria(self) -> tuple[Criterion, ...]:
+        """What decides an automatic choice; each decides where those before it tie."""
+        return (Criterion(self.DISTANCE_AXES, TIE),)
+
+    def _is_nearer(self, axes: Reals, other: Reals, near: Reals) -> bool:
+        """Whether axes are nearer to the reference than others."""
+        for counted, tie in self._criteria:
+            own, least = squared_distance(axes, near, counted), squared_distance(other, near, counted)
+            if own < least - tie:
+                return True
+            if least < own - tie:
+                return False
+        return False
 
     def _limit_status(self, axes: Reals) -> Status:
         return self._limits(axes) if self.checks_limits else Status.OK

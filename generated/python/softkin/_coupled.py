@@ -8,6 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
+from softkin._configuration import TIE, Criterion
 from softkin._core import TWIST, Image, Mechanism, Pose
 from softkin._input import bytes_of
 from softkin._orientation import OrientationKinematics, turning_axis
@@ -41,7 +42,8 @@ class Coupled(Mechanism):
 
     Axes: those of the position kinematics, then those of the orientation kinematics; the bytes of the configuration
     likewise. An axis or a byte of the second that has a name of the first is called `orientation <name>`.
-    An automatic choice counts the rotary axes of both, and linear ones where only they tell branches apart.
+    An automatic choice counts the rotary axes of both; where they tie and only linear ones tell the branches of the
+    position kinematics apart, these.
     The position is met or refused; of the rotation, the tool direction comes before the twist.
     Limits and parameters are those of the parts, `position_part` and `orientation_part`. The Jacobian has all six rows.
     """
@@ -84,6 +86,12 @@ class Coupled(Mechanism):
         angles = tuple(i for i, axis in enumerate(self.AXES) if axis.unit == "deg")
         seen = set(first.DISTANCE_AXES) & set(angles) or not first.BRANCHES
         self.DISTANCE_AXES = angles if seen and angles else (*first.DISTANCE_AXES, *angles)
+        rotary = (Criterion(angles, TIE),) if angles else ()
+        self._nearest_by = rotary if seen and angles else (*rotary, *first._criteria)
+
+    @property
+    def _criteria(self) -> tuple[Criterion, ...]:
+        return self._nearest_by
 
     def __repr__(self) -> str:
         """The call that makes this mechanism."""

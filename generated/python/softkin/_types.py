@@ -103,7 +103,10 @@ class Singularity(NamedTuple):
     is_singular: bool
     """Whether some margin is smaller than 0.001 in size, or the axes allow no pose."""
     margins: Mapping[str, float]
-    """Dimensionless and signed, by name; NaN where the axes allow no pose."""
+    """Dimensionless and signed, by name; NaN where the axes allow no pose.
+
+    Of a machine that has no length (a polar arm, a crane) the margin of a distance is 1, and 0 where an axis is free.
+    """
 
 
 class OrientationImage(NamedTuple):

@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 168 additions, 184 multiplications, 43 divisions, 1 square roots, 16 sines
-    inverse: 79344 additions, 160346 multiplications, 19839 divisions, 7207 square roots, 14412 sines
-    inverse, all 16 branches open: 1269009 additions, 2564861 multiplications, 317289 divisions, 115282 square roots, 230592 sines
+    inverse: 79344 additions, 160345 multiplications, 19839 divisions, 7207 square roots, 14412 sines
+    inverse, all 16 branches open: 1269009 additions, 2564845 multiplications, 317289 divisions, 115282 square roots, 230592 sines
     search along the joint, from its reference outwards: at most 1800 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse searches along A6, from the reference
@@ -768,14 +768,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         reach_closed = sqrt(
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
-        # kept as a product
-        sine_square_q3_closed = (
-            (effective_q3_closed + reach_closed - a2)*(a2 + effective_q3_closed + reach_closed)
-            *(a2 + effective_q3_closed - reach_closed)*(a2 + reach_closed - effective_q3_closed)
-            /(swing_scale_q3_closed*swing_scale_q3_closed)
-        )
+        # zero where it is stretched or folded
+        below_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
+        # zero where it is the other
+        above_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
+        product_q3_closed = above_q3_closed*below_q3_closed
         # q3: out of reach
-        if not ((sine_square_q3_closed >= -1e-12) or (searched > 0.5)):
+        if not ((searched > 0.5) or (product_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed)):
             return Status.UNREACHABLE
         # without the offset there is no second crossing
         if not ((searched > 0.5) or (sigma_crossing > 0.0)):
@@ -969,10 +968,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         else:
             cos_q1 = cos_q1_closed
             sin_q1 = sin_q1_closed
-            sin_swing_q3_closed = (sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
-            cos_swing_q3_closed = (
-                (reach_closed*reach_closed - a2*a2 - effective_q3_closed*effective_q3_closed)/swing_scale_q3_closed
+            both_q3_closed = above_q3_closed + below_q3_closed  # twice the scale, with the rounding of its parts
+            sum_q3_closed = both_q3_closed if both_q3_closed > 0.0 else 1.0
+            sin_swing_q3_closed = (
+                2.0*(sqrt(product_q3_closed) if product_q3_closed > 0.0 else 0.0)*sigma_elbow/sum_q3_closed
             )
+            cos_swing_q3_closed = (above_q3_closed - below_q3_closed)/sum_q3_closed
             # its reference where it is free
             if reach_closed > 1e-11*machine_scale:
                 arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed

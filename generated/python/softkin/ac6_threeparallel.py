@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 184 additions, 183 multiplications, 44 divisions, 11 square roots, 18 sines
-    inverse, all 8 branches open: 1241 additions, 1149 multiplications, 289 divisions, 74 square roots, 144 sines
+    inverse: 184 additions, 182 multiplications, 44 divisions, 11 square roots, 18 sines
+    inverse, all 8 branches open: 1241 additions, 1141 multiplications, 289 divisions, 74 square roots, 144 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -114,8 +114,8 @@ class Constants(NamedTuple):
     mid_a6: float
     machine_scale: float
     rounding_q1: float
-    size_q6_of_q3: float
     scale_q3: float
+    size_q6_of_q3: float
 
 
 class Ac6ThreeParallel(Mechanism):
@@ -455,8 +455,8 @@ class Ac6ThreeParallel(Mechanism):
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = abs(a2) + abs(a3)  # a length of the machine
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
-        size_q6_of_q3 = 2.0*abs(a2*a3)
         scale_q3 = 2.0*a2*a3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
+        size_q6_of_q3 = 2.0*abs(a2*a3)
         return Constants(
             d1=d1, a2=a2, a3=a3, d4=d4, d5=d5, d6=d6, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
             offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6, check_limits=check_limits,
@@ -470,7 +470,7 @@ class Ac6ThreeParallel(Mechanism):
             upper_a5=effective_upper_a5, unlimited_a5=unlimited_a5, lowest_a5=lowest_a5, highest_a5=highest_a5,
             single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6, upper_a6=effective_upper_a6,
             unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6, single_a6=single_a6, mid_a6=mid_a6,
-            machine_scale=machine_scale, rounding_q1=rounding_q1, size_q6_of_q3=size_q6_of_q3, scale_q3=scale_q3,
+            machine_scale=machine_scale, rounding_q1=rounding_q1, scale_q3=scale_q3, size_q6_of_q3=size_q6_of_q3,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -785,18 +785,21 @@ class Ac6ThreeParallel(Mechanism):
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (a3 + reach - a2)*(a2 + a3 + reach)*(a2 + a3 - reach)*(a2 + reach - a3)/(scale_q3*scale_q3)
+        below_q3 = (a2 + a3 + reach)*(a2 + a3 - reach)  # zero where it is stretched or folded
+        above_q3 = (a3 + reach - a2)*(a2 + reach - a3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
         # q3: out of reach
-        if not (sine_square_q3 >= -1e-12):
+        if not (product_q3 >= -1e-12*scale_q3*scale_q3):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_q2 = a2 + a3*cos_q3

@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 66 additions, 68 multiplications, 8 divisions, 0 square roots, 14 sines
-    inverse: 147 additions, 151 multiplications, 37 divisions, 8 square roots, 12 sines
-    inverse, all 8 branches open: 945 additions, 893 multiplications, 233 divisions, 50 square roots, 96 sines
+    inverse: 147 additions, 150 multiplications, 37 divisions, 8 square roots, 12 sines
+    inverse, all 8 branches open: 945 additions, 885 multiplications, 233 divisions, 50 square roots, 96 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -703,21 +703,21 @@ class ArticulatedRobot6DOF(Mechanism):
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (effective_q3 + reach - a2)*(a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)
-            *(a2 + reach - effective_q3)/(swing_scale_q3*swing_scale_q3)
-        )
+        below_q3 = (a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)  # zero where it is stretched or folded
+        above_q3 = (effective_q3 + reach - a2)*(a2 + reach - effective_q3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
         # q3: out of reach
-        if not (sine_square_q3 >= -1e-12):
+        if not (product_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = -2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         # its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_q2 = -effective_q3*sin_swing_q3

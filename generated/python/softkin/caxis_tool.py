@@ -286,6 +286,8 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         """Whether a flange that turns can carry this."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         k = self._constants
+        tool_x = k.tool_x
+        tool_y = k.tool_y
         tool_z = k.tool_z
         unmet_offset = k.unmet_offset
         # numbers of reasonable size
@@ -298,7 +300,10 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             + flange_along*flange_along*flange_axis_x*flange_axis_x
             + flange_along*flange_along*flange_axis_y*flange_axis_y
         )
-        if not (flange_offset <= 1e-9 and unmet_offset <= 1e-9):
+        if not (
+            flange_offset <= 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)
+            and unmet_offset <= 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)
+        ):
             return Status.INVALID_COUPLING
         return Status.OK
 

@@ -13,7 +13,8 @@ Configuration:
 
 Singularities:
     free_theta: type 1
-    free_phi: type 1
+    free_phi: type 1; 1, and 0 where an axis is free, within 1e-11 of the unit of length: the machine has no
+    length that a distance from there could be compared with
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 11 additions, 7 multiplications, 1 divisions, 0 square roots, 4 sines
@@ -401,7 +402,8 @@ class Crane(OffsetKinematics):
         y = r*sin_phi*sin_theta  # y: affine in the y equation
         radius_theta = sqrt(x*x + y*y)  # theta: direction and distance of a point
         radius_phi = sqrt(radius_theta*radius_theta + z*z)  # phi: direction and distance of a point
-        margin_free_phi = radius_phi/machine_scale
+        length_free_phi = radius_phi/machine_scale
+        margin_free_phi = 1.0 if length_free_phi > 1e-11 else 0.0  # 1, and 0 where nothing determines the axis
         return (sin_phi, margin_free_phi)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:

@@ -25,8 +25,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 82 additions, 122 multiplications, 10 divisions, 1 square roots, 6 sines
-    inverse: 126 additions, 168 multiplications, 28 divisions, 6 square roots, 3 sines
-    inverse, all 8 branches open: 1001 additions, 1344 multiplications, 224 divisions, 48 square roots, 24 sines
+    inverse: 120 additions, 138 multiplications, 28 divisions, 6 square roots, 3 sines
+    inverse, all 8 branches open: 953 additions, 1104 multiplications, 224 divisions, 48 square roots, 24 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -769,20 +769,18 @@ class DeltaP3CType3(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
         swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (
-                2.0*divisor_a1*inner_arm_1 + inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z
-                - outer_arm_1*outer_arm_1
-            )
-            *(
-                2.0*divisor_a1*inner_arm_1 + outer_arm_1*outer_arm_1 - inner_arm_1*inner_arm_1 - span_1_x*span_1_x
-                - span_1_y*span_1_y - z*z
-            )
-            /(swing_scale_a1*swing_scale_a1)
+        # square of the third side
+        third_square_a1 = (
+            (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
+            *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
         )
+        # zero where it is stretched or folded
+        below_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        # zero where it is the other
+        above_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
@@ -793,20 +791,18 @@ class DeltaP3CType3(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
         swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                2.0*divisor_a2*inner_arm_2 + inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z
-                - outer_arm_2*outer_arm_2
-            )
-            *(
-                2.0*divisor_a2*inner_arm_2 + outer_arm_2*outer_arm_2 - inner_arm_2*inner_arm_2 - span_2_x*span_2_x
-                - span_2_y*span_2_y - z*z
-            )
-            /(swing_scale_a2*swing_scale_a2)
+        # square of the third side
+        third_square_a2 = (
+            (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
+            *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
         )
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        # zero where it is the other
+        above_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
@@ -817,26 +813,23 @@ class DeltaP3CType3(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
         swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (
-                2.0*divisor_a3*inner_arm_3 + inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z
-                - outer_arm_3*outer_arm_3
-            )
-            *(
-                2.0*divisor_a3*inner_arm_3 + outer_arm_3*outer_arm_3 - inner_arm_3*inner_arm_3 - span_3_x*span_3_x
-                - span_3_y*span_3_y - z*z
-            )
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
+            *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
         )
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        # zero where it is the other
+        above_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        product_a3 = above_a3*below_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return Status.UNREACHABLE
-        cos_swing_a1 = (
-            (inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y + z*z - outer_arm_1*outer_arm_1)
-            /swing_scale_a1
-        )
-        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
         # rod 1
         pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
@@ -847,11 +840,10 @@ class DeltaP3CType3(OffsetKinematics):
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        cos_swing_a2 = (
-            (inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y + z*z - outer_arm_2*outer_arm_2)
-            /swing_scale_a2
-        )
-        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
         # rod 2
         pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
@@ -862,11 +854,10 @@ class DeltaP3CType3(OffsetKinematics):
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        cos_swing_a3 = (
-            (inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y + z*z - outer_arm_3*outer_arm_3)
-            /swing_scale_a3
-        )
-        sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
+        sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
         # rod 3
         pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
@@ -1288,20 +1279,18 @@ class DeltaP3CType3(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm_1 else 1.0
         swing_scale_a1 = 2.0*divisor_a1*inner_arm_1  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (
-                2.0*divisor_a1*inner_arm_1 + flange_z*flange_z + inner_arm_1*inner_arm_1 + span_1_x*span_1_x
-                + span_1_y*span_1_y - outer_arm_1*outer_arm_1
-            )
-            *(
-                2.0*divisor_a1*inner_arm_1 + outer_arm_1*outer_arm_1 - flange_z*flange_z - inner_arm_1*inner_arm_1
-                - span_1_x*span_1_x - span_1_y*span_1_y
-            )
-            /(swing_scale_a1*swing_scale_a1)
+        # square of the third side
+        third_square_a1 = (
+            (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
+            *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
         )
+        # zero where it is stretched or folded
+        below_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        # zero where it is the other
+        above_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
         span_2_x = flange_x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = flange_y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
@@ -1312,20 +1301,18 @@ class DeltaP3CType3(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm_2 else 1.0
         swing_scale_a2 = 2.0*divisor_a2*inner_arm_2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                2.0*divisor_a2*inner_arm_2 + flange_z*flange_z + inner_arm_2*inner_arm_2 + span_2_x*span_2_x
-                + span_2_y*span_2_y - outer_arm_2*outer_arm_2
-            )
-            *(
-                2.0*divisor_a2*inner_arm_2 + outer_arm_2*outer_arm_2 - flange_z*flange_z - inner_arm_2*inner_arm_2
-                - span_2_x*span_2_x - span_2_y*span_2_y
-            )
-            /(swing_scale_a2*swing_scale_a2)
+        # square of the third side
+        third_square_a2 = (
+            (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
+            *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
         )
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        # zero where it is the other
+        above_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
         span_3_x = flange_x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = flange_y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
@@ -1336,29 +1323,23 @@ class DeltaP3CType3(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*inner_arm_3 else 1.0
         swing_scale_a3 = 2.0*divisor_a3*inner_arm_3  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (
-                2.0*divisor_a3*inner_arm_3 + flange_z*flange_z + inner_arm_3*inner_arm_3 + span_3_x*span_3_x
-                + span_3_y*span_3_y - outer_arm_3*outer_arm_3
-            )
-            *(
-                2.0*divisor_a3*inner_arm_3 + outer_arm_3*outer_arm_3 - flange_z*flange_z - inner_arm_3*inner_arm_3
-                - span_3_x*span_3_x - span_3_y*span_3_y
-            )
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
+            *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
         )
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        # zero where it is the other
+        above_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        product_a3 = above_a3*below_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return Status.UNREACHABLE
-        cos_swing_a1 = (
-            (
-                flange_z*flange_z + inner_arm_1*inner_arm_1 + span_1_x*span_1_x + span_1_y*span_1_y
-                - outer_arm_1*outer_arm_1
-            )
-            /swing_scale_a1
-        )
-        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + flange_z*sin_swing_a1/divisor_a1
         # rod 1
         pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
@@ -1369,14 +1350,10 @@ class DeltaP3CType3(OffsetKinematics):
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - flange_z*cos_swing_a1/divisor_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = flange_z - pivot_1_z
-        cos_swing_a2 = (
-            (
-                flange_z*flange_z + inner_arm_2*inner_arm_2 + span_2_x*span_2_x + span_2_y*span_2_y
-                - outer_arm_2*outer_arm_2
-            )
-            /swing_scale_a2
-        )
-        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + flange_z*sin_swing_a2/divisor_a2
         # rod 2
         pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
@@ -1387,14 +1364,10 @@ class DeltaP3CType3(OffsetKinematics):
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - flange_z*cos_swing_a2/divisor_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = flange_z - pivot_2_z
-        cos_swing_a3 = (
-            (
-                flange_z*flange_z + inner_arm_3*inner_arm_3 + span_3_x*span_3_x + span_3_y*span_3_y
-                - outer_arm_3*outer_arm_3
-            )
-            /swing_scale_a3
-        )
-        sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
+        sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + flange_z*sin_swing_a3/divisor_a3
         # rod 3
         pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3

@@ -20,9 +20,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 84 additions, 209 multiplications, 17 divisions, 1 square roots, 4 sines
-    inverse: 112 additions, 260 multiplications, 35 divisions, 6 square roots, 2 sines
-    inverse, all 4 branches open: 445 additions, 1040 multiplications, 140 divisions, 24 square roots, 8 sines
+    forward: 54 additions, 78 multiplications, 17 divisions, 2 square roots, 4 sines
+    inverse: 78 additions, 97 multiplications, 31 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 309 additions, 388 multiplications, 124 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -76,6 +76,7 @@ class Constants(NamedTuple):
     single_a2: float
     mid_a2: float
     machine_scale: float
+    radius_2: float
     assembly_sign: float
 
 
@@ -297,6 +298,7 @@ class KinType12XY(OffsetKinematics):
         mid_a2 = 0.5*effective_lower_a2 + 0.5*effective_upper_a2
         # a length of the machine
         machine_scale = link_length_1 + link_length_2 + link_length_3 + link_length_4 + link_length_5
+        radius_2 = link_length_2*link_length_4/link_length_3
         # assembly mode of this machine
         assembly_sign = 1.0 - 2.0*e_right if 1.0 - 2.0*swap_xy > 0.0 else 2.0*e_right - 1.0
         return Constants(
@@ -306,7 +308,8 @@ class KinType12XY(OffsetKinematics):
             lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
             highest_a1=highest_a1, single_a1=single_a1, mid_a1=mid_a1, lower_a2=effective_lower_a2,
             upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2,
-            single_a2=single_a2, mid_a2=mid_a2, machine_scale=machine_scale, assembly_sign=assembly_sign,
+            single_a2=single_a2, mid_a2=mid_a2, machine_scale=machine_scale, radius_2=radius_2,
+            assembly_sign=assembly_sign,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -321,6 +324,7 @@ class KinType12XY(OffsetKinematics):
         link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        radius_2 = k.radius_2
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -351,57 +355,24 @@ class KinType12XY(OffsetKinematics):
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (
-            normal_square > 9.999999999999999e-23*link_length_2*link_length_2
-            + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy
-            + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-            + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy
-            - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy
-            - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-        ):
+        if not (normal_square > 9.999999999999999e-23*link_length_2*link_length_2):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-            else 1.0
-        )
-        # foot of the height, as a share
-        along_centres = (
-            0.5
-            *(
-                apart_2_x*apart_2_x + apart_2_y*apart_2_y + link_length_2*link_length_2
-                + 4.0*pivot_upper_x*pivot_upper_y*swap_xy + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-                - link_length_2*link_length_2*(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-                )/(link_length_3*link_length_3)
-            )
-            /normal_divisor
-        )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-            + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - foot_x*foot_x - foot_y*foot_y - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-            - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
+            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
+            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
         )
         # the rods do not meet
-        if not (
-            height_square >= 2e-12*pivot_upper_x*pivot_upper_x*swap_xy + 2e-12*pivot_upper_y*pivot_upper_y*swap_xy
-            + 4e-12*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy - 1e-12*link_length_2*link_length_2
-            - 4e-12*pivot_upper_x*pivot_upper_y*swap_xy - 2e-12*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-            - 2e-12*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-        ):
+        if not (height_square >= -1e-12*link_length_2*link_length_2):
             return Status.IMPOSSIBLE
+        # foot of the height, as a share
+        along_centres = 0.5*(normal_divisor + (link_length_2 + radius_2)*(link_length_2 - radius_2))/normal_divisor
+        foot_x = along_centres*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
+        foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
@@ -433,10 +404,10 @@ class KinType12XY(OffsetKinematics):
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
-        link_length_4 = k.link_length_4
         link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        radius_2 = k.radius_2
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -467,54 +438,17 @@ class KinType12XY(OffsetKinematics):
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (
-            normal_square > 9.999999999999999e-23*link_length_2*link_length_2
-            + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy
-            + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-            + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy
-            - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy
-            - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-        ):
+        if not (normal_square > 9.999999999999999e-23*link_length_2*link_length_2):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-            else 1.0
-        )
-        # foot of the height, as a share
-        along_centres = (
-            0.5
-            *(
-                apart_2_x*apart_2_x + apart_2_y*apart_2_y + link_length_2*link_length_2
-                + 4.0*pivot_upper_x*pivot_upper_y*swap_xy + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-                - link_length_2*link_length_2*(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-                )/(link_length_3*link_length_3)
-            )
-            /normal_divisor
-        )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-            + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - foot_x*foot_x - foot_y*foot_y - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-            - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
+            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
+            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
         )
         # the rods do not meet
-        if not (
-            height_square >= 2e-12*pivot_upper_x*pivot_upper_x*swap_xy + 2e-12*pivot_upper_y*pivot_upper_y*swap_xy
-            + 4e-12*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy - 1e-12*link_length_2*link_length_2
-            - 4e-12*pivot_upper_x*pivot_upper_y*swap_xy - 2e-12*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-            - 2e-12*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-        ):
+        if not (height_square >= -1e-12*link_length_2*link_length_2):
             return Status.IMPOSSIBLE
         return ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -560,19 +494,18 @@ class KinType12XY(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
         swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
-        # kept as a product
-        sine_square_a1 = (
-            (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_1 + link_length_2)
-            *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
-            /(swing_scale_a1*swing_scale_a1)
-        )
+        # zero where it is stretched or folded
+        below_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
+        # zero where it is the other
+        above_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
-        cos_swing_a1 = (
-            (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
-        )
-        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
         span_rear_x = (
@@ -599,66 +532,30 @@ class KinType12XY(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_5 else 1.0
         swing_scale_a2 = 2.0*divisor_a2*link_length_5  # a2: law of cosines in the rod rear equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                2.0*divisor_a2*link_length_2*link_length_2*link_length_5
-                + link_length_1*link_length_1*link_length_2*link_length_2
-                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                + link_length_1*link_length_1*link_length_3*link_length_3
-                + link_length_2*link_length_2*link_length_5*link_length_5
-                + link_length_2*link_length_2*span_rear_x*span_rear_x
-                + link_length_2*link_length_2*span_rear_y*span_rear_y
-                - link_length_2*link_length_2*link_length_4*link_length_4
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1
-            )
-            *(
-                2.0*divisor_a2*link_length_2*link_length_2*link_length_5
-                + link_length_2*link_length_2*link_length_4*link_length_4
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1
-                - link_length_1*link_length_1*link_length_2*link_length_2
-                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                - link_length_1*link_length_1*link_length_3*link_length_3
-                - link_length_2*link_length_2*link_length_5*link_length_5
-                - link_length_2*link_length_2*span_rear_x*span_rear_x
-                - link_length_2*link_length_2*span_rear_y*span_rear_y
-            )
-            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2*swing_scale_a2)
-        )
+        # zero where it is stretched or folded
+        below_a2 = (divisor_a2 + link_length_4 + link_length_5)*(divisor_a2 + link_length_5 - link_length_4)
+        # zero where it is the other
+        above_a2 = (link_length_4 + link_length_5 - divisor_a2)*(divisor_a2 + link_length_4 - link_length_5)
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        cos_swing_a2 = (
-            (
-                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1
-                + 2.0*link_length_1*span_rear_x*sin_a1
-                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1/link_length_2
-                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1/link_length_2 - link_length_1*link_length_1
-                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
-            )
-            /swing_scale_a2
-        )
-        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w
+        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+        rod_1_x = x - centre_1_x
+        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
+        rod_1_y = y - centre_1_y
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_w/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
-        rod_1_x = x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-        rod_1_y = y - centre_1_y
         centre_2_x = (
             (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
             /link_length_3
@@ -671,21 +568,7 @@ class KinType12XY(OffsetKinematics):
         rod_2_y = y - centre_2_y
         type2_arms_aligned = (
             assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
-            /(
-                root(
-                    link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-                    + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                    + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                    - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-                )
-                *root(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-                )
-                *link_length_2
-            )
+            /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
@@ -730,6 +613,7 @@ class KinType12XY(OffsetKinematics):
         link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        radius_2 = k.radius_2
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -760,57 +644,24 @@ class KinType12XY(OffsetKinematics):
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (
-            normal_square > 9.999999999999999e-23*link_length_2*link_length_2
-            + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy
-            + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-            + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy
-            - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy
-            - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-        ):
+        if not (normal_square > 9.999999999999999e-23*link_length_2*link_length_2):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-            else 1.0
-        )
-        # foot of the height, as a share
-        along_centres = (
-            0.5
-            *(
-                apart_2_x*apart_2_x + apart_2_y*apart_2_y + link_length_2*link_length_2
-                + 4.0*pivot_upper_x*pivot_upper_y*swap_xy + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-                - link_length_2*link_length_2*(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-                )/(link_length_3*link_length_3)
-            )
-            /normal_divisor
-        )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-            + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - foot_x*foot_x - foot_y*foot_y - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-            - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
+            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
+            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
         )
         # the rods do not meet
-        if not (
-            height_square >= 2e-12*pivot_upper_x*pivot_upper_x*swap_xy + 2e-12*pivot_upper_y*pivot_upper_y*swap_xy
-            + 4e-12*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy - 1e-12*link_length_2*link_length_2
-            - 4e-12*pivot_upper_x*pivot_upper_y*swap_xy - 2e-12*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-            - 2e-12*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-        ):
+        if not (height_square >= -1e-12*link_length_2*link_length_2):
             return Status.IMPOSSIBLE
+        # foot of the height, as a share
+        along_centres = 0.5*(normal_divisor + (link_length_2 + radius_2)*(link_length_2 - radius_2))/normal_divisor
+        foot_x = along_centres*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
+        foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
@@ -838,22 +689,7 @@ class KinType12XY(OffsetKinematics):
         rod_2_x = x - centre_2_x
         rod_2_y = y - centre_2_y
         margin_arms_aligned = (
-            link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
-            /(
-                root(
-                    link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-                    + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                    + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                    - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-                )
-                *root(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-                )
-                *link_length_2
-            )
+            link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)/(link_length_4*link_length_2*link_length_2)
         )
         return (margin_stretched_1, margin_stretched_2, margin_arms_aligned)
 
@@ -865,11 +701,11 @@ class KinType12XY(OffsetKinematics):
         link_length_1 = k.link_length_1
         link_length_2 = k.link_length_2
         link_length_3 = k.link_length_3
-        link_length_4 = k.link_length_4
         link_length_5 = k.link_length_5
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        radius_2 = k.radius_2
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -900,57 +736,24 @@ class KinType12XY(OffsetKinematics):
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (
-            normal_square > 9.999999999999999e-23*link_length_2*link_length_2
-            + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy
-            + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-            + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy
-            - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy
-            - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-        ):
+        if not (normal_square > 9.999999999999999e-23*link_length_2*link_length_2):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-            else 1.0
-        )
-        # foot of the height, as a share
-        along_centres = (
-            0.5
-            *(
-                apart_2_x*apart_2_x + apart_2_y*apart_2_y + link_length_2*link_length_2
-                + 4.0*pivot_upper_x*pivot_upper_y*swap_xy + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-                - link_length_2*link_length_2*(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-                )/(link_length_3*link_length_3)
-            )
-            /normal_divisor
-        )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-            + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - foot_x*foot_x - foot_y*foot_y - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-            - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
+            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
+            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
         )
         # the rods do not meet
-        if not (
-            height_square >= 2e-12*pivot_upper_x*pivot_upper_x*swap_xy + 2e-12*pivot_upper_y*pivot_upper_y*swap_xy
-            + 4e-12*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy - 1e-12*link_length_2*link_length_2
-            - 4e-12*pivot_upper_x*pivot_upper_y*swap_xy - 2e-12*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-            - 2e-12*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-        ):
+        if not (height_square >= -1e-12*link_length_2*link_length_2):
             return Status.IMPOSSIBLE
+        # foot of the height, as a share
+        along_centres = 0.5*(normal_divisor + (link_length_2 + radius_2)*(link_length_2 - radius_2))/normal_divisor
+        foot_x = along_centres*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
+        foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
         slope_1_by_x = (
             2.0*swap_xy*(y + link_length_1*cos_a1 + swap_xy*(x - y))
@@ -1070,19 +873,18 @@ class KinType12XY(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
         swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
-        # kept as a product
-        sine_square_a1 = (
-            (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_1 + link_length_2)
-            *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
-            /(swing_scale_a1*swing_scale_a1)
-        )
+        # zero where it is stretched or folded
+        below_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
+        # zero where it is the other
+        above_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
-        cos_swing_a1 = (
-            (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
-        )
-        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
         span_rear_x = (
@@ -1109,66 +911,30 @@ class KinType12XY(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_5 else 1.0
         swing_scale_a2 = 2.0*divisor_a2*link_length_5  # a2: law of cosines in the rod rear equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                2.0*divisor_a2*link_length_2*link_length_2*link_length_5
-                + link_length_1*link_length_1*link_length_2*link_length_2
-                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                + link_length_1*link_length_1*link_length_3*link_length_3
-                + link_length_2*link_length_2*link_length_5*link_length_5
-                + link_length_2*link_length_2*span_rear_x*span_rear_x
-                + link_length_2*link_length_2*span_rear_y*span_rear_y
-                - link_length_2*link_length_2*link_length_4*link_length_4
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1
-            )
-            *(
-                2.0*divisor_a2*link_length_2*link_length_2*link_length_5
-                + link_length_2*link_length_2*link_length_4*link_length_4
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1
-                - link_length_1*link_length_1*link_length_2*link_length_2
-                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                - link_length_1*link_length_1*link_length_3*link_length_3
-                - link_length_2*link_length_2*link_length_5*link_length_5
-                - link_length_2*link_length_2*span_rear_x*span_rear_x
-                - link_length_2*link_length_2*span_rear_y*span_rear_y
-            )
-            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2*swing_scale_a2)
-        )
+        # zero where it is stretched or folded
+        below_a2 = (divisor_a2 + link_length_4 + link_length_5)*(divisor_a2 + link_length_5 - link_length_4)
+        # zero where it is the other
+        above_a2 = (link_length_4 + link_length_5 - divisor_a2)*(divisor_a2 + link_length_4 - link_length_5)
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        cos_swing_a2 = (
-            (
-                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1
-                + 2.0*link_length_1*span_rear_x*sin_a1
-                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1/link_length_2
-                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1/link_length_2 - link_length_1*link_length_1
-                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
-            )
-            /swing_scale_a2
-        )
-        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w
+        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+        rod_1_x = flange_x - centre_1_x
+        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
+        rod_1_y = flange_y - centre_1_y
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_w/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
-        rod_1_x = flange_x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-        rod_1_y = flange_y - centre_1_y
         centre_2_x = (
             (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
             /link_length_3
@@ -1181,21 +947,7 @@ class KinType12XY(OffsetKinematics):
         rod_2_y = flange_y - centre_2_y
         type2_arms_aligned = (
             assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
-            /(
-                root(
-                    link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-                    + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                    + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                    - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-                )
-                *root(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-                )
-                *link_length_2
-            )
+            /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
@@ -1224,6 +976,7 @@ class KinType12XY(OffsetKinematics):
         link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        radius_2 = k.radius_2
         swap_xy = k.swap_xy
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9):
@@ -1254,57 +1007,24 @@ class KinType12XY(OffsetKinematics):
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        if not (
-            normal_square > 9.999999999999999e-23*link_length_2*link_length_2
-            + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy
-            + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-            + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy
-            - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy
-            - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-        ):
+        if not (normal_square > 9.999999999999999e-23*link_length_2*link_length_2):
             return Status.IMPOSSIBLE
-        normal_divisor = (
-            normal_square
-            if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-            else 1.0
-        )
-        # foot of the height, as a share
-        along_centres = (
-            0.5
-            *(
-                apart_2_x*apart_2_x + apart_2_y*apart_2_y + link_length_2*link_length_2
-                + 4.0*pivot_upper_x*pivot_upper_y*swap_xy + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-                - link_length_2*link_length_2*(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-                )/(link_length_3*link_length_3)
-            )
-            /normal_divisor
-        )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        normal_divisor = normal_square if normal_square > 9.999999999999999e-23*link_length_2*link_length_2 else 1.0
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
         # the square of the height over the centres
         height_square = (
-            link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-            + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - foot_x*foot_x - foot_y*foot_y - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-            - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
+            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
+            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
         )
         # the rods do not meet
-        if not (
-            height_square >= 2e-12*pivot_upper_x*pivot_upper_x*swap_xy + 2e-12*pivot_upper_y*pivot_upper_y*swap_xy
-            + 4e-12*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy - 1e-12*link_length_2*link_length_2
-            - 4e-12*pivot_upper_x*pivot_upper_y*swap_xy - 2e-12*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-            - 2e-12*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-        ):
+        if not (height_square >= -1e-12*link_length_2*link_length_2):
             return Status.IMPOSSIBLE
+        # foot of the height, as a share
+        along_centres = 0.5*(normal_divisor + (link_length_2 + radius_2)*(link_length_2 - radius_2))/normal_divisor
+        foot_x = along_centres*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         flange_x = centre_1_x + foot_x - apart_2_y*rise
+        foot_y = along_centres*apart_2_y
         flange_y = centre_1_y + foot_y + apart_2_x*rise
         span_upper_x = flange_x + flange_y*swap_xy - flange_x*swap_xy  # rod upper
         span_upper_y = flange_y + flange_x*swap_xy - flange_y*swap_xy  # rod upper

@@ -20,9 +20,9 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 30 additions, 33 multiplications, 6 divisions, 1 square roots, 4 sines
-    inverse: 62 additions, 57 multiplications, 19 divisions, 4 square roots, 2 sines
-    inverse, all 4 branches open: 245 additions, 228 multiplications, 76 divisions, 16 square roots, 8 sines
+    forward: 29 additions, 33 multiplications, 6 divisions, 2 square roots, 4 sines
+    inverse: 62 additions, 55 multiplications, 19 divisions, 4 square roots, 2 sines
+    inverse, all 4 branches open: 245 additions, 220 multiplications, 76 divisions, 16 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -311,17 +311,19 @@ class P2CType2(OffsetKinematics):
         if not (normal_square > 9.999999999999999e-23*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
         normal_divisor = normal_square if normal_square > 9.999999999999999e-23*outer_arm*outer_arm else 1.0
-        # foot of the height, as a share
-        along_centres = 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y)/normal_divisor
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
         # the square of the height over the centres
-        height_square = outer_arm*outer_arm - foot_x*foot_x - foot_y*foot_y
+        height_square = (
+            0.25*(2.0*outer_arm - between_centres)*(between_centres + 2.0*outer_arm)*between_centres*between_centres
+            /normal_divisor
+        )
         # the rods do not meet
         if not (height_square >= -1e-12*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
+        foot_x = 0.5*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
+        foot_y = 0.5*apart_2_y
         y = foot_y + pivot_1_y + apart_2_x*rise
         span_1_x = displacement + x - 0.5*tcp_link_distance  # rod 1
         branch_knee_1 = (y*cos_a1 - span_1_x*sin_a1)/outer_arm
@@ -359,12 +361,12 @@ class P2CType2(OffsetKinematics):
         if not (normal_square > 9.999999999999999e-23*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
         normal_divisor = normal_square if normal_square > 9.999999999999999e-23*outer_arm*outer_arm else 1.0
-        # foot of the height, as a share
-        along_centres = 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y)/normal_divisor
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
         # the square of the height over the centres
-        height_square = outer_arm*outer_arm - foot_x*foot_x - foot_y*foot_y
+        height_square = (
+            0.25*(2.0*outer_arm - between_centres)*(between_centres + 2.0*outer_arm)*between_centres*between_centres
+            /normal_divisor
+        )
         # the rods do not meet
         if not (height_square >= -1e-12*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
@@ -408,13 +410,13 @@ class P2CType2(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
         swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
-            *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
-        )
+        # zero where it is stretched or folded
+        below_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
+        # zero where it is the other
+        above_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
         span_2_x = 0.5*tcp_link_distance + x - displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
@@ -423,24 +425,28 @@ class P2CType2(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
         swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
-            *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
-        )
+        # zero where it is stretched or folded
+        below_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
+        # zero where it is the other
+        above_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
-        cos_swing_a1 = (divisor_a1*divisor_a1 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a1
-        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
         pivot_1_x = 0.5*tcp_link_distance + inner_arm*cos_a1 - displacement  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
-        cos_swing_a2 = (divisor_a2*divisor_a2 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a2
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement + inner_arm*cos_a2 - 0.5*tcp_link_distance  # rod 2
         rod_2_x = x - pivot_2_x
@@ -510,17 +516,19 @@ class P2CType2(OffsetKinematics):
         if not (normal_square > 9.999999999999999e-23*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
         normal_divisor = normal_square if normal_square > 9.999999999999999e-23*outer_arm*outer_arm else 1.0
-        # foot of the height, as a share
-        along_centres = 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y)/normal_divisor
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
         # the square of the height over the centres
-        height_square = outer_arm*outer_arm - foot_x*foot_x - foot_y*foot_y
+        height_square = (
+            0.25*(2.0*outer_arm - between_centres)*(between_centres + 2.0*outer_arm)*between_centres*between_centres
+            /normal_divisor
+        )
         # the rods do not meet
         if not (height_square >= -1e-12*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
+        foot_y = 0.5*apart_2_y
         rise = root(height_square/normal_divisor)*assembly_sign
         y = foot_y + pivot_1_y + apart_2_x*rise
+        foot_x = 0.5*apart_2_x
         x = foot_x + pivot_1_x - apart_2_y*rise
         span_1_x = displacement + x - 0.5*tcp_link_distance  # rod 1
         margin_stretched_1 = (y*cos_a1 - span_1_x*sin_a1)/outer_arm
@@ -565,18 +573,20 @@ class P2CType2(OffsetKinematics):
         if not (normal_square > 9.999999999999999e-23*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
         normal_divisor = normal_square if normal_square > 9.999999999999999e-23*outer_arm*outer_arm else 1.0
-        # foot of the height, as a share
-        along_centres = 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y)/normal_divisor
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
         # the square of the height over the centres
-        height_square = outer_arm*outer_arm - foot_x*foot_x - foot_y*foot_y
+        height_square = (
+            0.25*(2.0*outer_arm - between_centres)*(between_centres + 2.0*outer_arm)*between_centres*between_centres
+            /normal_divisor
+        )
         # the rods do not meet
         if not (height_square >= -1e-12*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
+        foot_x = 0.5*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
         slope_1_by_x = 2.0*displacement + 2.0*x - tcp_link_distance - 2.0*inner_arm*cos_a1
+        foot_y = 0.5*apart_2_y
         y = foot_y + pivot_1_y + apart_2_x*rise
         slope_1_by_y = 2.0*y - 2.0*inner_arm*sin_a1
         slope_2_by_x = tcp_link_distance + 2.0*x - 2.0*displacement - 2.0*inner_arm*cos_a2
@@ -645,13 +655,13 @@ class P2CType2(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
         swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + inner_arm + outer_arm)
-            *(divisor_a1 + inner_arm - outer_arm)*(divisor_a1 + outer_arm - inner_arm)/(swing_scale_a1*swing_scale_a1)
-        )
+        # zero where it is stretched or folded
+        below_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
+        # zero where it is the other
+        above_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
         span_2_x = flange_x + 0.5*tcp_link_distance - displacement  # rod 2
         effective_a2 = sqrt(flange_y*flange_y + span_2_x*span_2_x)  # effective length that the angle turns
@@ -660,24 +670,28 @@ class P2CType2(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
         swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + inner_arm + outer_arm)
-            *(divisor_a2 + inner_arm - outer_arm)*(divisor_a2 + outer_arm - inner_arm)/(swing_scale_a2*swing_scale_a2)
-        )
+        # zero where it is stretched or folded
+        below_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
+        # zero where it is the other
+        above_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
-        cos_swing_a1 = (divisor_a1*divisor_a1 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a1
-        sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - flange_y*sin_swing_a1/divisor_a1
         pivot_1_x = 0.5*tcp_link_distance + inner_arm*cos_a1 - displacement  # rod 1
         rod_1_x = flange_x - pivot_1_x
         sin_a1 = flange_y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         pivot_1_y = inner_arm*sin_a1  # rod 1
         rod_1_y = flange_y - pivot_1_y
-        cos_swing_a2 = (divisor_a2*divisor_a2 + inner_arm*inner_arm - outer_arm*outer_arm)/swing_scale_a2
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 - flange_y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement + inner_arm*cos_a2 - 0.5*tcp_link_distance  # rod 2
         rod_2_x = flange_x - pivot_2_x
@@ -731,17 +745,19 @@ class P2CType2(OffsetKinematics):
         if not (normal_square > 9.999999999999999e-23*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
         normal_divisor = normal_square if normal_square > 9.999999999999999e-23*outer_arm*outer_arm else 1.0
-        # foot of the height, as a share
-        along_centres = 0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y)/normal_divisor
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
         # the square of the height over the centres
-        height_square = outer_arm*outer_arm - foot_x*foot_x - foot_y*foot_y
+        height_square = (
+            0.25*(2.0*outer_arm - between_centres)*(between_centres + 2.0*outer_arm)*between_centres*between_centres
+            /normal_divisor
+        )
         # the rods do not meet
         if not (height_square >= -1e-12*outer_arm*outer_arm):
             return Status.IMPOSSIBLE
+        foot_y = 0.5*apart_2_y
         rise = root(height_square/normal_divisor)*assembly_sign
         flange_y = foot_y + pivot_1_y + apart_2_x*rise
+        foot_x = 0.5*apart_2_x
         flange_x = foot_x + pivot_1_x - apart_2_y*rise
         span_1_x = displacement + flange_x - 0.5*tcp_link_distance  # rod 1
         branch_knee_1 = (flange_y*cos_a1 - span_1_x*sin_a1)/outer_arm

@@ -18,7 +18,7 @@ Singularities:
     arms_aligned: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 19 additions, 21 multiplications, 4 divisions, 1 square roots, 0 sines
+    forward: 25 additions, 19 multiplications, 5 divisions, 2 square roots, 0 sines
     inverse: 26 additions, 15 multiplications, 1 divisions, 2 square roots, 0 sines
     inverse, all 4 branches open: 101 additions, 60 multiplications, 4 divisions, 8 square roots, 0 sines
 
@@ -33,6 +33,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import Criterion
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import root, sqrt
@@ -70,6 +71,7 @@ class Constants(NamedTuple):
     lowest_a2: float
     highest_a2: float
     machine_scale: float
+    tie: float
     apart_2_y: float
     assembly_sign: float
 
@@ -261,6 +263,7 @@ class P2XType1(OffsetKinematics):
         lowest_a2 = -1e12 if unlimited_a2 > 0.0 else effective_lower_a2 - tolerance_a2
         highest_a2 = 1e12 if unlimited_a2 > 0.0 else effective_upper_a2 + tolerance_a2
         machine_scale = arm_length_1 + arm_length_2  # a length of the machine
+        tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
         apart_2_y = rail_y_2 - rail_y_1
         assembly_sign = 2.0*tcp_above - 1.0  # assembly mode of this machine
         return Constants(
@@ -270,7 +273,7 @@ class P2XType1(OffsetKinematics):
             lower_a1=effective_lower_a1, upper_a1=effective_upper_a1, unlimited_a1=unlimited_a1, lowest_a1=lowest_a1,
             highest_a1=highest_a1, lower_a2=effective_lower_a2, upper_a2=effective_upper_a2,
             unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, machine_scale=machine_scale,
-            apart_2_y=apart_2_y, assembly_sign=assembly_sign,
+            tie=tie, apart_2_y=apart_2_y, assembly_sign=assembly_sign,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -299,20 +302,24 @@ class P2XType1(OffsetKinematics):
         if not (normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
         normal_divisor = normal_square if normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1 else 1.0
-        # foot of the height, as a share
-        along_centres = (
-            0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + arm_length_1*arm_length_1 - arm_length_2*arm_length_2)
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        # the square of the height over the centres
+        height_square = (
+            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
+            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
             /normal_divisor
         )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
-        # the square of the height over the centres
-        height_square = arm_length_1*arm_length_1 - foot_x*foot_x - foot_y*foot_y
         # the rods do not meet
         if not (height_square >= -1e-12*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
+        # foot of the height, as a share
+        along_centres = (
+            0.5*(normal_divisor + (arm_length_1 + arm_length_2)*(arm_length_1 - arm_length_2))/normal_divisor
+        )
+        foot_x = along_centres*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
+        foot_y = along_centres*apart_2_y
         y = foot_y + rail_y_1 + apart_2_x*rise
         span_1_x = x - tcp_offset_1  # rod 1
         branch_carriage_1 = (span_1_x - a1)/arm_length_1
@@ -348,15 +355,13 @@ class P2XType1(OffsetKinematics):
         if not (normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
         normal_divisor = normal_square if normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1 else 1.0
-        # foot of the height, as a share
-        along_centres = (
-            0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + arm_length_1*arm_length_1 - arm_length_2*arm_length_2)
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        # the square of the height over the centres
+        height_square = (
+            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
+            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
             /normal_divisor
         )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
-        # the square of the height over the centres
-        height_square = arm_length_1*arm_length_1 - foot_x*foot_x - foot_y*foot_y
         # the rods do not meet
         if not (height_square >= -1e-12*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
@@ -457,18 +462,21 @@ class P2XType1(OffsetKinematics):
         if not (normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
         normal_divisor = normal_square if normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1 else 1.0
-        # foot of the height, as a share
-        along_centres = (
-            0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + arm_length_1*arm_length_1 - arm_length_2*arm_length_2)
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        # the square of the height over the centres
+        height_square = (
+            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
+            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
             /normal_divisor
         )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
-        # the square of the height over the centres
-        height_square = arm_length_1*arm_length_1 - foot_x*foot_x - foot_y*foot_y
         # the rods do not meet
         if not (height_square >= -1e-12*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
+        # foot of the height, as a share
+        along_centres = (
+            0.5*(normal_divisor + (arm_length_1 + arm_length_2)*(arm_length_1 - arm_length_2))/normal_divisor
+        )
+        foot_x = along_centres*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
         span_1_x = x - tcp_offset_1  # rod 1
@@ -476,6 +484,7 @@ class P2XType1(OffsetKinematics):
         span_2_x = tcp_offset_2 + x  # rod 2
         margin_upright_2 = (a2 - span_2_x)/arm_length_2
         rod_1_x = x - pivot_1_x
+        foot_y = along_centres*apart_2_y
         y = foot_y + rail_y_1 + apart_2_x*rise
         rod_1_y = y - rail_y_1
         rod_2_x = x - pivot_2_x
@@ -511,21 +520,25 @@ class P2XType1(OffsetKinematics):
         if not (normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
         normal_divisor = normal_square if normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1 else 1.0
-        # foot of the height, as a share
-        along_centres = (
-            0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + arm_length_1*arm_length_1 - arm_length_2*arm_length_2)
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        # the square of the height over the centres
+        height_square = (
+            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
+            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
             /normal_divisor
         )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
-        # the square of the height over the centres
-        height_square = arm_length_1*arm_length_1 - foot_x*foot_x - foot_y*foot_y
         # the rods do not meet
         if not (height_square >= -1e-12*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
+        # foot of the height, as a share
+        along_centres = (
+            0.5*(normal_divisor + (arm_length_1 + arm_length_2)*(arm_length_1 - arm_length_2))/normal_divisor
+        )
+        foot_x = along_centres*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
         slope_1_by_x = 2.0*x - 2.0*a1 - 2.0*tcp_offset_1
+        foot_y = along_centres*apart_2_y
         y = foot_y + rail_y_1 + apart_2_x*rise
         slope_1_by_y = 2.0*y - 2.0*rail_y_1
         slope_2_by_x = 2.0*tcp_offset_2 + 2.0*x - 2.0*a2
@@ -630,18 +643,21 @@ class P2XType1(OffsetKinematics):
         if not (normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
         normal_divisor = normal_square if normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1 else 1.0
-        # foot of the height, as a share
-        along_centres = (
-            0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + arm_length_1*arm_length_1 - arm_length_2*arm_length_2)
+        between_centres = (sqrt(normal_divisor) if normal_divisor > 0.0 else 0.0)
+        # the square of the height over the centres
+        height_square = (
+            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
+            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
             /normal_divisor
         )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
-        # the square of the height over the centres
-        height_square = arm_length_1*arm_length_1 - foot_x*foot_x - foot_y*foot_y
         # the rods do not meet
         if not (height_square >= -1e-12*arm_length_1*arm_length_1):
             return Status.IMPOSSIBLE
+        # foot of the height, as a share
+        along_centres = (
+            0.5*(normal_divisor + (arm_length_1 + arm_length_2)*(arm_length_1 - arm_length_2))/normal_divisor
+        )
+        foot_x = along_centres*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         flange_x = foot_x + pivot_1_x - apart_2_y*rise
         span_1_x = flange_x - tcp_offset_1  # rod 1
@@ -663,6 +679,10 @@ class P2XType1(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
+
+    @property
+    def _criteria(self) -> tuple[Criterion, ...]:
+        return (Criterion(self.DISTANCE_AXES, self._constants.tie),)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -18,8 +18,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 13 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 42 additions, 30 multiplications, 9 divisions, 2 square roots, 4 sines
-    inverse, all 2 branches open: 80 additions, 58 multiplications, 17 divisions, 4 square roots, 8 sines
+    inverse: 42 additions, 29 multiplications, 9 divisions, 2 square roots, 4 sines
+    inverse, all 2 branches open: 80 additions, 56 multiplications, 17 divisions, 4 square roots, 8 sines
 
 Angles are right-handed about +Z.
 
@@ -331,17 +331,20 @@ class PCC(OffsetKinematics):
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         reach = sqrt(x*x + y*y)
-        # kept as a product
-        sine_square_a2_from_a1 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
-            /(scale_a2_from_a1*scale_a2_from_a1)
-        )
+        # zero where it is stretched or folded
+        below_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # zero where it is the other
+        above_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
         # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -1e-12):
+        if not (product_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
             return Status.UNREACHABLE
-        cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
-        sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
+        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1 = (
+            2.0*(sqrt(product_a2_from_a1) if product_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
+        )
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1
@@ -461,17 +464,20 @@ class PCC(OffsetKinematics):
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
         reach = sqrt(flange_x*flange_x + flange_y*flange_y)
-        # kept as a product
-        sine_square_a2_from_a1 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
-            /(scale_a2_from_a1*scale_a2_from_a1)
-        )
+        # zero where it is stretched or folded
+        below_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # zero where it is the other
+        above_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
         # a2_from_a1: out of reach
-        if not (sine_square_a2_from_a1 >= -1e-12):
+        if not (product_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
             return Status.UNREACHABLE
-        cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
-        sin_a2_from_a1 = (sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
+        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1 = (
+            2.0*(sqrt(product_a2_from_a1) if product_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
+        )
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1

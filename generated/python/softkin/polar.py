@@ -11,7 +11,8 @@ Configuration:
     period of C: signed number of the turn, 0 = open: see `inverse`
 
 Singularities:
-    free_c: type 1
+    free_c: type 1; 1, and 0 where an axis is free, within 1e-11 of the unit of length: the machine has no
+    length that a distance from there could be compared with
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 8 additions, 3 multiplications, 1 divisions, 0 square roots, 2 sines
@@ -300,7 +301,8 @@ class Polar(Mechanism):
         sin_c = sin(c)
         y = r*sin_c
         radius_c = sqrt(x*x + y*y)  # c: direction and distance of a point
-        margin_free_c = radius_c/machine_scale
+        length_free_c = radius_c/machine_scale
+        margin_free_c = 1.0 if length_free_c > 1e-11 else 0.0  # 1, and 0 where nothing determines the axis
         return (margin_free_c,)
 
     def _jacobian(self, axes: Reals) -> Matrix | Status:

@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 30 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
-    inverse: 61 additions, 52 multiplications, 17 divisions, 4 square roots, 7 sines
-    inverse, all 4 branches open: 241 additions, 208 multiplications, 68 divisions, 16 square roots, 28 sines
+    inverse: 61 additions, 51 multiplications, 17 divisions, 4 square roots, 7 sines
+    inverse, all 4 branches open: 241 additions, 204 multiplications, 68 divisions, 16 square roots, 28 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -450,21 +450,21 @@ class PosRRR(OffsetKinematics):
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (effective_q3_2 + reach - a2)*(a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)
-            *(a2 + reach - effective_q3_2)/(swing_scale_q3_2*swing_scale_q3_2)
-        )
+        below_q3 = (a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)  # zero where it is stretched or folded
+        above_q3 = (effective_q3_2 + reach - a2)*(a2 + reach - effective_q3_2)  # zero where it is the other
+        product_q3 = above_q3*below_q3
         # q3: out of reach
-        if not (sine_square_q3 >= -1e-12):
+        if not (product_q3 >= -1e-12*swing_scale_q3_2*swing_scale_q3_2):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3_2*effective_q3_2)/swing_scale_q3_2
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = -2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_q2 = -effective_q3_2*sin_swing_q3
@@ -696,6 +696,8 @@ class PosRRR(OffsetKinematics):
         # q3: its effective length is too short
         if not (effective_q3 > 1e-9*a2):
             return Status.UNREACHABLE
+        divisor_q3 = effective_q3 if effective_q3 > 1e-9*a2 else 1.0
+        swing_scale_q3 = 2.0*a2*divisor_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
             # how far ahead of the axis the point is; negative: behind
@@ -710,23 +712,21 @@ class PosRRR(OffsetKinematics):
         wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        divisor_q3 = effective_q3 if effective_q3 > 1e-9*a2 else 1.0
-        swing_scale_q3 = 2.0*a2*divisor_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
-        # kept as a product
-        sine_square_q3 = (
-            (divisor_q3 + reach - a2)*(a2 + divisor_q3 + reach)*(a2 + divisor_q3 - reach)*(a2 + reach - divisor_q3)
-            /(swing_scale_q3*swing_scale_q3)
-        )
+        below_q3 = (a2 + divisor_q3 + reach)*(a2 + divisor_q3 - reach)  # zero where it is stretched or folded
+        above_q3 = (divisor_q3 + reach - a2)*(a2 + reach - divisor_q3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
         # q3: out of reach
-        if not (sine_square_q3 >= -1e-12):
+        if not (product_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        cos_swing_q3 = (reach*reach - a2*a2 - divisor_q3*divisor_q3)/swing_scale_q3
-        sin_swing_q3 = -(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
+        sin_swing_q3 = -2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
         cos_q3 = tool_x*cos_swing_q3/divisor_q3 + tool_y*sin_swing_q3/divisor_q3
         sin_q3 = tool_x*sin_swing_q3/divisor_q3 - tool_y*cos_swing_q3/divisor_q3
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free

@@ -19,8 +19,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 15 additions, 6 multiplications, 2 divisions, 0 square roots, 5 sines
-    inverse: 39 additions, 27 multiplications, 8 divisions, 2 square roots, 4 sines
-    inverse, all 2 branches open: 77 additions, 54 multiplications, 16 divisions, 4 square roots, 8 sines
+    inverse: 39 additions, 26 multiplications, 8 divisions, 2 square roots, 4 sines
+    inverse, all 2 branches open: 77 additions, 52 multiplications, 16 divisions, 4 square roots, 8 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -332,16 +332,18 @@ class Scara3CCZ(OffsetKinematics):
         ):
             return Status.BAD_INPUT
         reach = sqrt(x*x + y*y)
-        # kept as a product
-        sine_square_a2 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a2*scale_a2)
-        )
+        # zero where it is stretched or folded
+        below_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # zero where it is the other
+        above_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*scale_a2*scale_a2):
             return Status.UNREACHABLE
-        cos_a2 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a1 = link_length_1 + link_length_2*cos_a2
@@ -482,19 +484,21 @@ class Scara3CCZ(OffsetKinematics):
         # a2: its effective length is too short
         if not (effective_a2 > 1e-9*link_length_1):
             return Status.UNREACHABLE
-        reach = sqrt(x*x + y*y)
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_1 else 1.0
         swing_scale_a2 = 2.0*divisor_a2*link_length_1  # a2: law of cosines in the x² + y² equation
-        # kept as a product
-        sine_square_a2 = (
-            (link_length_1 + reach - divisor_a2)*(divisor_a2 + link_length_1 + reach)
-            *(divisor_a2 + link_length_1 - reach)*(divisor_a2 + reach - link_length_1)/(swing_scale_a2*swing_scale_a2)
-        )
+        reach = sqrt(x*x + y*y)
+        # zero where it is stretched or folded
+        below_a2 = (divisor_a2 + link_length_1 + reach)*(divisor_a2 + link_length_1 - reach)
+        # zero where it is the other
+        above_a2 = (link_length_1 + reach - divisor_a2)*(divisor_a2 + reach - link_length_1)
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
-        cos_swing_a2 = (reach*reach - divisor_a2*divisor_a2 - link_length_1*link_length_1)/swing_scale_a2
-        sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         cos_a2 = tool_x*cos_swing_a2/divisor_a2 + point_y*sin_swing_a2/divisor_a2
         sin_a2 = tool_x*sin_swing_a2/divisor_a2 - point_y*cos_swing_a2/divisor_a2
         # a1: linear pair in the x and y equations; its reference where it is free

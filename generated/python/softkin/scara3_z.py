@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 89 additions, 80 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 145 additions, 115 multiplications, 35 divisions, 8 square roots, 10 sines
+    inverse: 89 additions, 79 multiplications, 22 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 145 additions, 113 multiplications, 35 divisions, 8 square roots, 10 sines
 
 As CODESYS's own block it is a complete kinematics and not a part to be coupled: no offset interface.
 
@@ -420,16 +420,18 @@ class Scara3Z(TwistChoice):
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a2 = (
-            (arm_length_2 + reach - arm_length_1)*(arm_length_1 + arm_length_2 + reach)
-            *(arm_length_1 + arm_length_2 - reach)*(arm_length_1 + reach - arm_length_2)/(scale_a2*scale_a2)
-        )
+        # zero where it is stretched or folded
+        below_a2 = (arm_length_1 + arm_length_2 + reach)*(arm_length_1 + arm_length_2 - reach)
+        # zero where it is the other
+        above_a2 = (arm_length_2 + reach - arm_length_1)*(arm_length_1 + reach - arm_length_2)
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*scale_a2*scale_a2):
             return Status.UNREACHABLE
-        cos_a2 = (reach*reach - arm_length_1*arm_length_1 - arm_length_2*arm_length_2)/scale_a2
-        sin_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2

@@ -20,8 +20,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 26 additions, 9 multiplications, 3 divisions, 0 square roots, 7 sines
-    inverse: 89 additions, 80 multiplications, 22 divisions, 5 square roots, 5 sines
-    inverse, all 2 branches open: 145 additions, 115 multiplications, 35 divisions, 8 square roots, 10 sines
+    inverse: 89 additions, 79 multiplications, 22 divisions, 5 square roots, 5 sines
+    inverse, all 2 branches open: 145 additions, 113 multiplications, 35 divisions, 8 square roots, 10 sines
 
 The name counts the three rotary joints; Kin_Scara4_ZCCC is the same block.
 
@@ -424,17 +424,19 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a3 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)/(scale_a3*scale_a3)
-        )
+        # zero where it is stretched or folded
+        below_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # zero where it is the other
+        above_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        product_a3 = above_a3*below_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
+        if not (product_a3 >= -1e-12*scale_a3*scale_a3):
             return Status.UNREACHABLE
         axis_a1 = offset_a1 + z
-        cos_a3 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a3
-        sin_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_a3 = (above_a3 - below_a3)/sum_a3
+        sin_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
         # a2: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
@@ -639,21 +641,23 @@ class Scara3ZCCC(OffsetKinematics, TwistChoice):
         # a3: its effective length is too short
         if not (effective_a3 > 1e-9*link_length_1):
             return Status.UNREACHABLE
-        reach = sqrt(x*x + y*y)
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*link_length_1 else 1.0
         swing_scale_a3 = 2.0*divisor_a3*link_length_1  # a3: law of cosines in the x² + y² equation
-        # kept as a product
-        sine_square_a3 = (
-            (link_length_1 + reach - divisor_a3)*(divisor_a3 + link_length_1 + reach)
-            *(divisor_a3 + link_length_1 - reach)*(divisor_a3 + reach - link_length_1)/(swing_scale_a3*swing_scale_a3)
-        )
+        reach = sqrt(x*x + y*y)
+        # zero where it is stretched or folded
+        below_a3 = (divisor_a3 + link_length_1 + reach)*(divisor_a3 + link_length_1 - reach)
+        # zero where it is the other
+        above_a3 = (link_length_1 + reach - divisor_a3)*(divisor_a3 + reach - link_length_1)
+        product_a3 = above_a3*below_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return Status.UNREACHABLE
         a1 = z - point_z  # a1: affine in the z equation
         axis_a1 = a1 + offset_a1
-        cos_swing_a3 = (reach*reach - divisor_a3*divisor_a3 - link_length_1*link_length_1)/swing_scale_a3
-        sin_swing_a3 = (sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
+        sin_swing_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
         cos_a3 = tool_x*cos_swing_a3/divisor_a3 + tool_y*sin_swing_a3/divisor_a3
         sin_a3 = tool_x*sin_swing_a3/divisor_a3 - tool_y*cos_swing_a3/divisor_a3
         # a2: linear pair in the x and y equations; its reference where it is free

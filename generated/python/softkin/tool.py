@@ -167,7 +167,7 @@ class Tool(OrientationKinematics):
             + (tool_y - flange_along*flange_axis_y)*(tool_y - flange_along*flange_axis_y)
             + (tool_z - flange_along*flange_axis_z)*(tool_z - flange_along*flange_axis_z)
         )
-        if not (flange_offset <= 1e-9):
+        if not (flange_offset <= 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)):
             return Status.INVALID_COUPLING
         return Status.OK
 

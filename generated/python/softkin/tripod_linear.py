@@ -36,6 +36,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import Criterion
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import DEGREE, cos, root, sin, sqrt
@@ -78,6 +79,7 @@ class Constants(NamedTuple):
     lowest_a3: float
     highest_a3: float
     machine_scale: float
+    tie: float
     sin_rail_angle: float
     cos_rail_angle: float
     assembly_sign: float
@@ -313,6 +315,7 @@ class TripodLinear(OffsetKinematics):
         lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
         machine_scale = arm_length + inner_radius + outer_radius  # a length of the machine
+        tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
         sin_rail_angle = sin(DEGREE*rail_angle)
         cos_rail_angle = cos(DEGREE*rail_angle)
         assembly_sign = 1.0 - 2.0*tcp_below  # assembly mode of this machine
@@ -325,7 +328,7 @@ class TripodLinear(OffsetKinematics):
             highest_a1=highest_a1, lower_a2=effective_lower_a2, upper_a2=effective_upper_a2,
             unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, lower_a3=effective_lower_a3,
             upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
-            machine_scale=machine_scale, sin_rail_angle=sin_rail_angle, cos_rail_angle=cos_rail_angle,
+            machine_scale=machine_scale, tie=tie, sin_rail_angle=sin_rail_angle, cos_rail_angle=cos_rail_angle,
             assembly_sign=assembly_sign, sin_max_angle_ball_joint=sin_max_angle_ball_joint,
         )
 
@@ -1041,6 +1044,10 @@ class TripodLinear(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
+
+    @property
+    def _criteria(self) -> tuple[Criterion, ...]:
+        return (Criterion(self.DISTANCE_AXES, self._constants.tie),)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -36,6 +36,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+from softkin._configuration import Criterion
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
 from softkin._scalar import root, sqrt
@@ -81,6 +82,7 @@ class Constants(NamedTuple):
     lowest_a3: float
     highest_a3: float
     machine_scale: float
+    tie: float
     pivot_1_y: float
     pivot_2_y: float
     apart_2_y: float
@@ -386,6 +388,7 @@ class TripodP3Z(OffsetKinematics):
         lowest_a3 = -1e12 if unlimited_a3 > 0.0 else effective_lower_a3 - tolerance_a3
         highest_a3 = 1e12 if unlimited_a3 > 0.0 else effective_upper_a3 + tolerance_a3
         machine_scale = arm_length + tcp_displacement  # a length of the machine
+        tie = 1e-12*machine_scale*machine_scale  # squared distances closer than this are equal
         pivot_1_y = rail_y_1 - rail_y_1*tcp_displacement/sqrt(rail_x_1*rail_x_1 + rail_y_1*rail_y_1)  # rod 1
         pivot_2_y = rail_y_2 - rail_y_2*tcp_displacement/sqrt(rail_x_2*rail_x_2 + rail_y_2*rail_y_2)  # rod 2
         apart_2_y = pivot_2_y - pivot_1_y
@@ -411,7 +414,7 @@ class TripodP3Z(OffsetKinematics):
             unlimited_a1=unlimited_a1, lowest_a1=lowest_a1, highest_a1=highest_a1, lower_a2=effective_lower_a2,
             upper_a2=effective_upper_a2, unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2,
             lower_a3=effective_lower_a3, upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3,
-            highest_a3=highest_a3, machine_scale=machine_scale, pivot_1_y=pivot_1_y, pivot_2_y=pivot_2_y,
+            highest_a3=highest_a3, machine_scale=machine_scale, tie=tie, pivot_1_y=pivot_1_y, pivot_2_y=pivot_2_y,
             apart_2_y=apart_2_y, pivot_3_y=pivot_3_y, apart_3_y=apart_3_y, pivot_1_x=pivot_1_x, pivot_2_x=pivot_2_x,
             apart_2_x=apart_2_x, pivot_3_x=pivot_3_x, apart_3_x=apart_3_x, normal_z=normal_z,
             assembly_sign=assembly_sign,
@@ -1006,6 +1009,10 @@ class TripodP3Z(OffsetKinematics):
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
         return solve(position, rotation, reference)
+
+    @property
+    def _criteria(self) -> tuple[Criterion, ...]:
+        return (Criterion(self.DISTANCE_AXES, self._constants.tie),)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

@@ -24,9 +24,9 @@ Singularities:
     rods_coplanar: type 2
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 117 additions, 209 multiplications, 10 divisions, 34 square roots, 6 sines
-    inverse: 166 additions, 260 multiplications, 33 divisions, 46 square roots, 3 sines
-    inverse, all 8 branches open: 1321 additions, 2080 multiplications, 264 divisions, 368 square roots, 24 sines
+    forward: 72 additions, 110 multiplications, 10 divisions, 13 square roots, 6 sines
+    inverse: 116 additions, 146 multiplications, 33 divisions, 29 square roots, 3 sines
+    inverse, all 8 branches open: 921 additions, 1168 multiplications, 264 divisions, 232 square roots, 24 sines
 
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -88,6 +88,8 @@ class Constants(NamedTuple):
     single_a3: float
     mid_a3: float
     machine_scale: float
+    fixed_length_1: float
+    fixed_length_2: float
     assembly_sign: float
     sin_max_angle_ball_joint: float
 
@@ -360,6 +362,13 @@ class TripodRotary(OffsetKinematics):
         mid_a3 = 0.5*effective_lower_a3 + 0.5*effective_upper_a3
         # a length of the machine
         machine_scale = arm_1_radius + arm_length_1 + arm_length_2 + distance + stewart_radius
+        # a length of the machine
+        fixed_length_1 = 0.5*root(-(distance + 2.0*stewart_radius)*(distance - 2.0*stewart_radius))
+        # a length of the machine
+        fixed_length_2 = root(
+            -(arm_1_radius + arm_length_1 + arm_length_2 - fixed_length_1)
+            *(arm_1_radius + arm_length_1 - arm_length_2 - fixed_length_1)
+        )
         assembly_sign = 2.0*tcp_above - 1.0  # assembly mode of this machine
         sin_max_angle_ball_joint = sin(DEGREE*max_angle_ball_joint)
         return Constants(
@@ -372,7 +381,8 @@ class TripodRotary(OffsetKinematics):
             unlimited_a2=unlimited_a2, lowest_a2=lowest_a2, highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2,
             lower_a3=effective_lower_a3, upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3,
             highest_a3=highest_a3, single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale,
-            assembly_sign=assembly_sign, sin_max_angle_ball_joint=sin_max_angle_ball_joint,
+            fixed_length_1=fixed_length_1, fixed_length_2=fixed_length_2, assembly_sign=assembly_sign,
+            sin_max_angle_ball_joint=sin_max_angle_ball_joint,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -383,79 +393,37 @@ class TripodRotary(OffsetKinematics):
         arm_length_1 = k.arm_length_1
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
-        distance = k.distance
+        fixed_length_1 = k.fixed_length_1
+        fixed_length_2 = k.fixed_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        stewart_radius = k.stewart_radius
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod 2
-        pivot_2_y = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2
-        )
+        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
         # rod 3
-        pivot_3_y = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        # rod 1
-        pivot_1_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         sin_a2 = sin(a2)
-        # rod 2
-        pivot_2_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         apart_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        # rod 3
-        pivot_3_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
-        # rod 2
-        pivot_2_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
@@ -493,30 +461,13 @@ class TripodRotary(OffsetKinematics):
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + normal_y*rise
         z = foot_z + pivot_1_z + normal_z*rise
-        span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
-        # rod 1
-        span_1_z = (
-            z
-            - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-        )
+        span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
+        span_1_z = z - fixed_length_2  # rod 1
         branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
-        # rod 2
-        span_2_y = (
-            y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
+        span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         branch_knee_2 = 0.5*(root(3.0)*span_2_y*sin_a2 - 2.0*span_1_z*cos_a2 - span_2_x*sin_a2)/arm_length_2
-        # rod 3
-        span_3_y = (
-            y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         branch_knee_3 = 0.5*(-2.0*span_1_z*cos_a3 - span_2_x*sin_a3 - root(3.0)*span_3_y*sin_a3)/arm_length_2
         return (
             (x, y, z),
@@ -531,79 +482,37 @@ class TripodRotary(OffsetKinematics):
         arm_1_radius = k.arm_1_radius
         arm_length_1 = k.arm_length_1
         arm_length_2 = k.arm_length_2
-        distance = k.distance
+        fixed_length_1 = k.fixed_length_1
+        fixed_length_2 = k.fixed_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        stewart_radius = k.stewart_radius
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod 2
-        pivot_2_y = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2
-        )
+        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
         # rod 3
-        pivot_3_y = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        # rod 1
-        pivot_1_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         sin_a2 = sin(a2)
-        # rod 2
-        pivot_2_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         apart_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        # rod 3
-        pivot_3_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
-        # rod 2
-        pivot_2_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
@@ -652,7 +561,8 @@ class TripodRotary(OffsetKinematics):
         arm_length_1 = k.arm_length_1
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
-        distance = k.distance
+        fixed_length_1 = k.fixed_length_1
+        fixed_length_2 = k.fixed_length_2
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -664,51 +574,31 @@ class TripodRotary(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        stewart_radius = k.stewart_radius
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return Status.BAD_INPUT
-        span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
-        # rod 1
-        span_1_z = (
-            z
-            - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-        )
+        span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
+        span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > 1e-9*arm_length_1):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (
-                2.0*arm_length_1*divisor_a1 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1
-                - divisor_a1*divisor_a1 - y*y
-            )
-            *(
-                arm_length_1*arm_length_1 + 2.0*arm_length_1*divisor_a1 + divisor_a1*divisor_a1 + y*y
-                - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a1*swing_scale_a1)
-        )
+        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
+        # zero where it is stretched or folded
+        below_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+        # zero where it is the other
+        above_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
-        span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
-        # rod 2
-        span_2_y = (
-            y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
+        span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
@@ -717,26 +607,20 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                arm_length_1*divisor_a2 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_2_y*span_2_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_2_y*span_2_y - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a2*swing_scale_a2)
+        # square of the third side
+        third_square_a2 = (
+            (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+            *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
         )
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
+        # zero where it is the other
+        above_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
-        # rod 3
-        span_3_y = (
-            y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
@@ -744,106 +628,54 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (
-                arm_length_1*divisor_a3 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_3_y*span_3_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_3_y*span_3_y - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
+            *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
         )
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
+        # zero where it is the other
+        above_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        product_a3 = above_a3*below_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return Status.UNREACHABLE
-        cos_swing_a1 = (
-            (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
-        )
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
+        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        cos_swing_a2 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a2
-        )
-        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         rod_2_x = x - pivot_2_x
         # rod 2
-        pivot_2_y = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2
-        )
+        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        cos_swing_a3 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a3
-        )
-        sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
+        sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         rod_3_x = x - pivot_3_x
         # rod 3
-        pivot_3_y = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
             assembly_sign
@@ -911,79 +743,37 @@ class TripodRotary(OffsetKinematics):
         arm_length_1 = k.arm_length_1
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
-        distance = k.distance
+        fixed_length_1 = k.fixed_length_1
+        fixed_length_2 = k.fixed_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        stewart_radius = k.stewart_radius
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod 2
-        pivot_2_y = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2
-        )
+        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
         # rod 3
-        pivot_3_y = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        # rod 1
-        pivot_1_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         sin_a2 = sin(a2)
-        # rod 2
-        pivot_2_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         apart_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        # rod 3
-        pivot_3_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
-        # rod 2
-        pivot_2_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
@@ -1019,32 +809,15 @@ class TripodRotary(OffsetKinematics):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
+        span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
         z = foot_z + pivot_1_z + normal_z*rise
-        # rod 1
-        span_1_z = (
-            z
-            - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-        )
+        span_1_z = z - fixed_length_2  # rod 1
         margin_stretched_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
+        span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
         y = foot_y + normal_y*rise
-        # rod 2
-        span_2_y = (
-            y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         margin_stretched_2 = 0.5*(root(3.0)*span_2_y*sin_a2 - 2.0*span_1_z*cos_a2 - span_2_x*sin_a2)/arm_length_2
-        # rod 3
-        span_3_y = (
-            y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         margin_stretched_3 = 0.5*(-2.0*span_1_z*cos_a3 - span_2_x*sin_a3 - root(3.0)*span_3_y*sin_a3)/arm_length_2
         rod_1_x = x - pivot_1_x
         rod_1_z = z - pivot_1_z
@@ -1071,80 +844,38 @@ class TripodRotary(OffsetKinematics):
         arm_length_1 = k.arm_length_1
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
-        distance = k.distance
+        fixed_length_1 = k.fixed_length_1
+        fixed_length_2 = k.fixed_length_2
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        stewart_radius = k.stewart_radius
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod 2
-        pivot_2_y = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2
-        )
+        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
         # rod 3
-        pivot_3_y = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        # rod 1
-        pivot_1_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         sin_a2 = sin(a2)
-        # rod 2
-        pivot_2_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         apart_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        # rod 3
-        pivot_3_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
-        # rod 2
-        pivot_2_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
@@ -1180,54 +911,17 @@ class TripodRotary(OffsetKinematics):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x + normal_x*rise
-        slope_1_by_x = (
-            2.0*arm_1_radius + 2.0*x + 2.0*arm_length_1*cos_a1
-            - 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        slope_1_by_x = 2.0*arm_1_radius + 2.0*x + 2.0*arm_length_1*cos_a1 - 2.0*fixed_length_1
         y = foot_y + normal_y*rise
         slope_1_by_y = 2.0*y
         z = foot_z + pivot_1_z + normal_z*rise
-        slope_1_by_z = (
-            2.0*z + 2.0*arm_length_1*sin_a1
-            - 2.0*root(
-                arm_length_2*arm_length_2
-                - (
-                    arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-                )*(arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance))
-            )
-        )
-        slope_2_by_x = (
-            2.0*x + root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a2
-        )
-        slope_2_by_y = (
-            2.0*y + root(3.0)*(arm_1_radius + arm_length_1*cos_a2)
-            - root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
-        slope_2_by_z = (
-            2.0*z + 2.0*arm_length_1*sin_a2
-            - 2.0*root(
-                arm_length_2*arm_length_2
-                - (
-                    arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-                )*(arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance))
-            )
-        )
-        slope_3_by_x = (
-            2.0*x + root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a3
-        )
-        slope_3_by_y = (
-            2.0*y + root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - root(3.0)*(arm_1_radius + arm_length_1*cos_a3)
-        )
-        slope_3_by_z = (
-            2.0*z + 2.0*arm_length_1*sin_a3
-            - 2.0*root(
-                arm_length_2*arm_length_2
-                - (
-                    arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-                )*(arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance))
-            )
-        )
+        slope_1_by_z = 2.0*z + 2.0*arm_length_1*sin_a1 - 2.0*fixed_length_2
+        slope_2_by_x = fixed_length_1 + 2.0*x - arm_1_radius - arm_length_1*cos_a2
+        slope_2_by_y = 2.0*y + root(3.0)*(arm_1_radius + arm_length_1*cos_a2) - root(3.0)*fixed_length_1
+        slope_2_by_z = 2.0*z + 2.0*arm_length_1*sin_a2 - 2.0*fixed_length_2
+        slope_3_by_x = fixed_length_1 + 2.0*x - arm_1_radius - arm_length_1*cos_a3
+        slope_3_by_y = 2.0*y + root(3.0)*fixed_length_1 - root(3.0)*(arm_1_radius + arm_length_1*cos_a3)
+        slope_3_by_z = 2.0*z + 2.0*arm_length_1*sin_a3 - 2.0*fixed_length_2
         # of the closure by the position: zero in a type 2 singularity
         determinant = (
             slope_1_by_x*slope_2_by_y*slope_3_by_z + slope_1_by_y*slope_2_by_z*slope_3_by_x
@@ -1238,18 +932,8 @@ class TripodRotary(OffsetKinematics):
         if not (abs(determinant) > 1e-11*machine_scale*machine_scale*machine_scale):
             return Status.IMPOSSIBLE
         slope_1_by_a1 = (
-            2.0*arm_length_1*(
-                z + arm_length_1*sin_a1
-                - root(
-                    arm_length_2*arm_length_2
-                    - (
-                        arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-                    )*(arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance))
-                )
-            )*cos_a1
-            - 2.0*(
-                arm_1_radius + x + arm_length_1*cos_a1 - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-            )*arm_length_1*sin_a1
+            2.0*arm_length_1*(z + arm_length_1*sin_a1 - fixed_length_2)*cos_a1
+            - 2.0*(arm_1_radius + x + arm_length_1*cos_a1 - fixed_length_1)*arm_length_1*sin_a1
         )
         determinant_divisor = (
             determinant
@@ -1257,41 +941,17 @@ class TripodRotary(OffsetKinematics):
             else 1.0
         )
         slope_2_by_a2 = (
-            2.0*arm_length_1*(
-                z + arm_length_1*sin_a2
-                - root(
-                    arm_length_2*arm_length_2
-                    - (
-                        arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-                    )*(arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance))
-                )
-            )*cos_a2
-            + (
-                x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius
-                - 0.5*arm_length_1*cos_a2
-            )*arm_length_1*sin_a2
-            - root(3.0)*arm_length_1*(
-                y + 0.5*root(3.0)*(arm_1_radius + arm_length_1*cos_a2)
-                - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            )*sin_a2
+            2.0*arm_length_1*(z + arm_length_1*sin_a2 - fixed_length_2)*cos_a2
+            + (0.5*fixed_length_1 + x - 0.5*arm_1_radius - 0.5*arm_length_1*cos_a2)*arm_length_1*sin_a2
+            - (
+                y + 0.5*root(3.0)*(arm_1_radius + arm_length_1*cos_a2) - 0.5*root(3.0)*fixed_length_1
+            )*root(3.0)*arm_length_1*sin_a2
         )
         slope_3_by_a3 = (
-            2.0*arm_length_1*(
-                z + arm_length_1*sin_a3
-                - root(
-                    arm_length_2*arm_length_2
-                    - (
-                        arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-                    )*(arm_1_radius + arm_length_1 - root(stewart_radius*stewart_radius - 0.25*distance*distance))
-                )
-            )*cos_a3
-            + (
-                x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius
-                - 0.5*arm_length_1*cos_a3
-            )*arm_length_1*sin_a3
+            2.0*arm_length_1*(z + arm_length_1*sin_a3 - fixed_length_2)*cos_a3
+            + (0.5*fixed_length_1 + x - 0.5*arm_1_radius - 0.5*arm_length_1*cos_a3)*arm_length_1*sin_a3
             + root(3.0)*arm_length_1*(
-                y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-                - 0.5*root(3.0)*(arm_1_radius + arm_length_1*cos_a3)
+                y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*(arm_1_radius + arm_length_1*cos_a3)
             )*sin_a3
         )
         return (
@@ -1330,7 +990,8 @@ class TripodRotary(OffsetKinematics):
         arm_length_1 = k.arm_length_1
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
-        distance = k.distance
+        fixed_length_1 = k.fixed_length_1
+        fixed_length_2 = k.fixed_length_2
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -1342,7 +1003,6 @@ class TripodRotary(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        stewart_radius = k.stewart_radius
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= point_x <= 1e9
@@ -1351,47 +1011,27 @@ class TripodRotary(OffsetKinematics):
         ):
             return Status.BAD_INPUT
         flange_x = x - point_x  # the flange behind the point
-        span_1_x = arm_1_radius + flange_x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
+        span_1_x = arm_1_radius + flange_x - fixed_length_1  # rod 1
         flange_z = z - point_z  # the flange behind the point
-        # rod 1
-        span_1_z = (
-            flange_z
-            - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-        )
+        span_1_z = flange_z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > 1e-9*arm_length_1):
             return Status.UNREACHABLE
-        flange_y = y - point_y  # the flange behind the point
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (
-                2.0*arm_length_1*divisor_a1 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1
-                - divisor_a1*divisor_a1 - flange_y*flange_y
-            )
-            *(
-                arm_length_1*arm_length_1 + 2.0*arm_length_1*divisor_a1 + divisor_a1*divisor_a1 + flange_y*flange_y
-                - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a1*swing_scale_a1)
-        )
+        flange_y = y - point_y  # the flange behind the point
+        third_square_a1 = (arm_length_2 + flange_y)*(arm_length_2 - flange_y)  # square of the third side
+        # zero where it is stretched or folded
+        below_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+        # zero where it is the other
+        above_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        if not (sine_square_a1 >= -1e-12):
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
-        # rod 2
-        span_2_x = flange_x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius
-        # rod 2
-        span_2_y = (
-            flange_y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        span_2_x = 0.5*fixed_length_1 + flange_x - 0.5*arm_1_radius  # rod 2
+        span_2_y = flange_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
@@ -1400,26 +1040,20 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                arm_length_1*divisor_a2 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_2_y*span_2_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_2_y*span_2_y - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a2*swing_scale_a2)
+        # square of the third side
+        third_square_a2 = (
+            (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+            *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
         )
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
+        # zero where it is the other
+        above_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        if not (sine_square_a2 >= -1e-12):
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
-        # rod 3
-        span_3_y = (
-            flange_y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        span_3_y = flange_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
@@ -1427,107 +1061,54 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (
-                arm_length_1*divisor_a3 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_3_y*span_3_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_3_y*span_3_y - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
+            *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
         )
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
+        # zero where it is the other
+        above_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        product_a3 = above_a3*below_a3
         # a3: out of reach
-        if not (sine_square_a3 >= -1e-12):
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return Status.UNREACHABLE
-        cos_swing_a1 = (
-            (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - flange_y*flange_y)
-            /swing_scale_a1
-        )
-        sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
+        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
         rod_1_x = flange_x - pivot_1_x
         sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = flange_z - pivot_1_z
-        cos_swing_a2 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a2
-        )
-        sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         rod_2_x = flange_x - pivot_2_x
         # rod 2
-        pivot_2_y = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2
-        )
+        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
         rod_2_y = flange_y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = flange_z - pivot_2_z
-        cos_swing_a3 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a3
-        )
-        sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
+        sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         rod_3_x = flange_x - pivot_3_x
         # rod 3
-        pivot_3_y = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
         rod_3_y = flange_y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z = flange_z - pivot_3_z
         type2_rods_coplanar = (
             (
@@ -1573,79 +1154,37 @@ class TripodRotary(OffsetKinematics):
         arm_length_1 = k.arm_length_1
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
-        distance = k.distance
+        fixed_length_1 = k.fixed_length_1
+        fixed_length_2 = k.fixed_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        stewart_radius = k.stewart_radius
         # numbers of reasonable size
         if not (-1e9 <= axis_a1 <= 1e9 and -1e9 <= axis_a2 <= 1e9 and -1e9 <= axis_a3 <= 1e9):
             return Status.BAD_INPUT
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod 2
-        pivot_2_y = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2
-        )
+        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
         # rod 3
-        pivot_3_y = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        # rod 1
-        pivot_1_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         sin_a2 = sin(a2)
-        # rod 2
-        pivot_2_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         apart_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        # rod 3
-        pivot_3_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
-        # rod 2
-        pivot_2_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
@@ -1681,33 +1220,15 @@ class TripodRotary(OffsetKinematics):
             return Status.IMPOSSIBLE
         rise = root(height_square/normal_divisor)*assembly_sign
         flange_x = foot_x + pivot_1_x + normal_x*rise
-        span_1_x = arm_1_radius + flange_x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
+        span_1_x = arm_1_radius + flange_x - fixed_length_1  # rod 1
         flange_z = foot_z + pivot_1_z + normal_z*rise
-        # rod 1
-        span_1_z = (
-            flange_z
-            - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-        )
+        span_1_z = flange_z - fixed_length_2  # rod 1
         branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        # rod 2
-        span_2_x = flange_x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius
+        span_2_x = 0.5*fixed_length_1 + flange_x - 0.5*arm_1_radius  # rod 2
         flange_y = foot_y + normal_y*rise
-        # rod 2
-        span_2_y = (
-            flange_y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        span_2_y = flange_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         branch_knee_2 = 0.5*(root(3.0)*span_2_y*sin_a2 - 2.0*span_1_z*cos_a2 - span_2_x*sin_a2)/arm_length_2
-        # rod 3
-        span_3_y = (
-            flange_y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        span_3_y = flange_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         branch_knee_3 = 0.5*(-2.0*span_1_z*cos_a3 - span_2_x*sin_a3 - root(3.0)*span_3_y*sin_a3)/arm_length_2
         return (branch_knee_1, branch_knee_2, branch_knee_3)
 

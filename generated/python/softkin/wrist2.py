@@ -465,7 +465,10 @@ class Wrist2(OrientationKinematics):
         """Whether a flange that turns can carry this."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         k = self._constants
+        roll_axis_offset_x = k.roll_axis_offset_x
+        roll_axis_offset_y = k.roll_axis_offset_y
         roll_axis_offset_z = k.roll_axis_offset_z
+        tool_length = k.tool_length
         unmet_offset = k.unmet_offset
         wrist_offset = k.wrist_offset
         # numbers of reasonable size
@@ -478,7 +481,17 @@ class Wrist2(OrientationKinematics):
             + flange_along*flange_along*flange_axis_x*flange_axis_x
             + flange_along*flange_along*flange_axis_y*flange_axis_y
         )
-        if not (flange_offset <= 1e-9 and wrist_offset <= 1e-9 and unmet_offset <= 1e-9):
+        if not (
+            flange_offset <= 1e-9*abs(
+                roll_axis_offset_x
+            ) + 1e-9*abs(roll_axis_offset_y) + 1e-9*abs(roll_axis_offset_z) + 1e-9*abs(tool_length)
+            and wrist_offset <= 1e-9*abs(
+                roll_axis_offset_x
+            ) + 1e-9*abs(roll_axis_offset_y) + 1e-9*abs(roll_axis_offset_z) + 1e-9*abs(tool_length)
+            and unmet_offset <= 1e-9*abs(
+                roll_axis_offset_x
+            ) + 1e-9*abs(roll_axis_offset_y) + 1e-9*abs(roll_axis_offset_z) + 1e-9*abs(tool_length)
+        ):
             return Status.INVALID_COUPLING
         return Status.OK
 

@@ -297,14 +297,17 @@ class ArrayPrograms(Programs):
         reach_closed = sqrt(
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
-        # kept as a product
-        sine_square_q3_closed = (
-            (effective_q3_closed + reach_closed - a2)*(a2 + effective_q3_closed + reach_closed)
-            *(a2 + effective_q3_closed - reach_closed)*(a2 + reach_closed - effective_q3_closed)
-            /(swing_scale_q3_closed*swing_scale_q3_closed)
-        )
+        # zero where it is stretched or folded
+        below_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
+        # zero where it is the other
+        above_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
+        product_q3_closed = above_q3_closed*below_q3_closed
         # q3: out of reach
-        require(status, (sine_square_q3_closed >= -1e-12) | (searched > 0.5), Status.UNREACHABLE)
+        require(
+            status,
+            (searched > 0.5) | (product_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed),
+            Status.UNREACHABLE,
+        )
         # without the offset there is no second crossing
         require(status, (searched > 0.5) | (sigma_crossing > 0.0), Status.UNREACHABLE)
         free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -516,10 +519,10 @@ class ArrayPrograms(Programs):
         else:
             cos_q1 = cos_q1_closed
             sin_q1 = sin_q1_closed
-            sin_swing_q3_closed = root(sine_square_q3_closed)*sigma_elbow
-            cos_swing_q3_closed = (
-                (reach_closed*reach_closed - a2*a2 - effective_q3_closed*effective_q3_closed)/swing_scale_q3_closed
-            )
+            both_q3_closed = above_q3_closed + below_q3_closed  # twice the scale, with the rounding of its parts
+            sum_q3_closed = select(both_q3_closed > 0.0, both_q3_closed, 1.0)
+            sin_swing_q3_closed = 2.0*root(product_q3_closed)*sigma_elbow/sum_q3_closed
+            cos_swing_q3_closed = (above_q3_closed - below_q3_closed)/sum_q3_closed
 
             def elsewhere_cos_q2_closed(free_a2: Real) -> Reals:
                 cos_q2_closed = cos(free_a2)  # its reference where it is free

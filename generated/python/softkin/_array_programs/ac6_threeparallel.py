@@ -364,10 +364,11 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (a3 + reach - a2)*(a2 + a3 + reach)*(a2 + a3 - reach)*(a2 + reach - a3)/(scale_q3*scale_q3)
+        below_q3 = (a2 + a3 + reach)*(a2 + a3 - reach)  # zero where it is stretched or folded
+        above_q3 = (a3 + reach - a2)*(a2 + reach - a3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
         # q3: out of reach
-        require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
+        require(status, product_q3 >= -1e-12*scale_q3*scale_q3, Status.UNREACHABLE)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -375,8 +376,10 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        cos_q3 = (reach*reach - a2*a2 - a3*a3)/scale_q3
-        sin_q3 = root(sine_square_q3)*sigma_elbow
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = select(absolute(both_q3) > 0.0, both_q3, 1.0)
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        sin_q3 = 2.0*root(product_q3)*sigma_elbow/absolute(sum_q3)
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -754,12 +757,11 @@ class ArrayPrograms(Programs):
         reach_left_down = sqrt(
             wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
         )
-        # kept as a product
-        sine_square_q3_left_down = (
-            (a3 + reach_left_down - a2)*(a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
-            *(a2 + reach_left_down - a3)/(scale_q3*scale_q3)
-        )
-        refusal_left_down = select(sine_square_q3_left_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
+        # zero where it is stretched or folded
+        below_q3_left_down = (a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
+        above_q3_left_down = (a3 + reach_left_down - a2)*(a2 + reach_left_down - a3)  # zero where it is the other
+        product_q3_left_down = above_q3_left_down*below_q3_left_down
+        refusal_left_down = select(product_q3_left_down >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -767,8 +769,10 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1_left = nearest_period(offset_a1 + degrees(sin_q1_left, cos_q1_left), near_a1)  # A1: its turn
-        cos_q3_left_down = (reach_left_down*reach_left_down - a2*a2 - a3*a3)/scale_q3
-        sin_q3_left_up_down = root(sine_square_q3_left_down)
+        both_q3_left_down = above_q3_left_down + below_q3_left_down  # twice the scale, with the rounding of its parts
+        sum_q3_left_down = select(absolute(both_q3_left_down) > 0.0, both_q3_left_down, 1.0)
+        cos_q3_left_down = (above_q3_left_down - below_q3_left_down)/sum_q3_left_down
+        sin_q3_left_up_down = 2.0*root(product_q3_left_down)/absolute(sum_q3_left_down)
 
         def elsewhere_direction_x_q2_left_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -1026,14 +1030,14 @@ class ArrayPrograms(Programs):
         reach_left_up = sqrt(
             wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
         )
-        # kept as a product
-        sine_square_q3_left_up = (
-            (a3 + reach_left_up - a2)*(a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)*(a2 + reach_left_up - a3)
-            /(scale_q3*scale_q3)
-        )
-        refusal_left_up = select(sine_square_q3_left_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        cos_q3_left_up = (reach_left_up*reach_left_up - a2*a2 - a3*a3)/scale_q3
-        sin_q3_left_up_up = root(sine_square_q3_left_up)
+        below_q3_left_up = (a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)  # zero where it is stretched or folded
+        above_q3_left_up = (a3 + reach_left_up - a2)*(a2 + reach_left_up - a3)  # zero where it is the other
+        product_q3_left_up = above_q3_left_up*below_q3_left_up
+        refusal_left_up = select(product_q3_left_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
+        both_q3_left_up = above_q3_left_up + below_q3_left_up  # twice the scale, with the rounding of its parts
+        sum_q3_left_up = select(absolute(both_q3_left_up) > 0.0, both_q3_left_up, 1.0)
+        cos_q3_left_up = (above_q3_left_up - below_q3_left_up)/sum_q3_left_up
+        sin_q3_left_up_up = 2.0*root(product_q3_left_up)/absolute(sum_q3_left_up)
 
         def elsewhere_direction_x_q2_left_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -1320,15 +1324,17 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
             + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
         )
-        # kept as a product
-        sine_square_q3_right_down = (
-            (a3 + reach_right_down - a2)*(a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
-            *(a2 + reach_right_down - a3)/(scale_q3*scale_q3)
-        )
-        refusal_right_down = select(sine_square_q3_right_down >= -1e-12, 0.0, 3.0)  # q3: out of reach
+        # zero where it is stretched or folded
+        below_q3_right_down = (a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
+        above_q3_right_down = (a3 + reach_right_down - a2)*(a2 + reach_right_down - a3)  # zero where it is the other
+        product_q3_right_down = above_q3_right_down*below_q3_right_down
+        refusal_right_down = select(product_q3_right_down >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
         axis_a1_right = nearest_period(offset_a1 + degrees(sin_q1_right, cos_q1_right), near_a1)  # A1: its turn
-        cos_q3_right_down = (reach_right_down*reach_right_down - a2*a2 - a3*a3)/scale_q3
-        sin_q3_right_up_down = root(sine_square_q3_right_down)
+        # twice the scale, with the rounding of its parts
+        both_q3_right_down = above_q3_right_down + below_q3_right_down
+        sum_q3_right_down = select(absolute(both_q3_right_down) > 0.0, both_q3_right_down, 1.0)
+        cos_q3_right_down = (above_q3_right_down - below_q3_right_down)/sum_q3_right_down
+        sin_q3_right_up_down = 2.0*root(product_q3_right_down)/absolute(sum_q3_right_down)
 
         def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -1562,14 +1568,15 @@ class ArrayPrograms(Programs):
         reach_right_up = sqrt(
             wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
         )
-        # kept as a product
-        sine_square_q3_right_up = (
-            (a3 + reach_right_up - a2)*(a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
-            *(a2 + reach_right_up - a3)/(scale_q3*scale_q3)
-        )
-        refusal_right_up = select(sine_square_q3_right_up >= -1e-12, 0.0, 3.0)  # q3: out of reach
-        cos_q3_right_up = (reach_right_up*reach_right_up - a2*a2 - a3*a3)/scale_q3
-        sin_q3_right_up_up = root(sine_square_q3_right_up)
+        # zero where it is stretched or folded
+        below_q3_right_up = (a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
+        above_q3_right_up = (a3 + reach_right_up - a2)*(a2 + reach_right_up - a3)  # zero where it is the other
+        product_q3_right_up = above_q3_right_up*below_q3_right_up
+        refusal_right_up = select(product_q3_right_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
+        both_q3_right_up = above_q3_right_up + below_q3_right_up  # twice the scale, with the rounding of its parts
+        sum_q3_right_up = select(absolute(both_q3_right_up) > 0.0, both_q3_right_up, 1.0)
+        cos_q3_right_up = (above_q3_right_up - below_q3_right_up)/sum_q3_right_up
+        sin_q3_right_up_up = 2.0*root(product_q3_right_up)/absolute(sum_q3_right_up)
 
         def elsewhere_direction_x_q2_right_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE

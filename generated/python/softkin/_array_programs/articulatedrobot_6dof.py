@@ -216,13 +216,11 @@ class ArrayPrograms(Programs):
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (effective_q3 + reach - a2)*(a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)
-            *(a2 + reach - effective_q3)/(swing_scale_q3*swing_scale_q3)
-        )
+        below_q3 = (a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)  # zero where it is stretched or folded
+        above_q3 = (effective_q3 + reach - a2)*(a2 + reach - effective_q3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
         # q3: out of reach
-        require(status, sine_square_q3 >= -1e-12, Status.UNREACHABLE)
+        require(status, product_q3 >= -1e-12*swing_scale_q3*swing_scale_q3, Status.UNREACHABLE)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -230,8 +228,10 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        sin_swing_q3 = -root(sine_square_q3)*sigma_elbow
-        cos_swing_q3 = (reach*reach - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = select(both_q3 > 0.0, both_q3, 1.0)
+        sin_swing_q3 = -2.0*root(product_q3)*sigma_elbow/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
 
         def elsewhere_cos_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -436,12 +436,12 @@ class ArrayPrograms(Programs):
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
         reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3_front = (
-            (effective_q3 + reach_front - a2)*(a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
-            *(a2 + reach_front - effective_q3)/(swing_scale_q3*swing_scale_q3)
-        )
-        refusal_front = select(sine_square_q3_front >= -1e-12, 0.0, 3.0)  # q3: out of reach
+        # zero where it is stretched or folded
+        below_q3_front = (a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
+        # zero where it is the other
+        above_q3_front = (effective_q3 + reach_front - a2)*(a2 + reach_front - effective_q3)
+        product_q3_front = above_q3_front*below_q3_front
+        refusal_front = select(product_q3_front >= -1e-12*swing_scale_q3*swing_scale_q3, 0.0, 3.0)  # q3: out of reach
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -449,8 +449,10 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
-        sin_swing_q3_front_up = root(sine_square_q3_front)
-        cos_swing_q3_front = (reach_front*reach_front - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        both_q3_front = above_q3_front + below_q3_front  # twice the scale, with the rounding of its parts
+        sum_q3_front = select(both_q3_front > 0.0, both_q3_front, 1.0)
+        sin_swing_q3_front_up = 2.0*root(product_q3_front)/sum_q3_front
+        cos_swing_q3_front = (above_q3_front - below_q3_front)/sum_q3_front
 
         def elsewhere_cos_q2_front_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -695,15 +697,17 @@ class ArrayPrograms(Programs):
         )
         wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
         reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3_back = (
-            (effective_q3 + reach_back - a2)*(a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
-            *(a2 + reach_back - effective_q3)/(swing_scale_q3*swing_scale_q3)
-        )
-        refusal_back = select(sine_square_q3_back >= -1e-12, 0.0, 3.0)  # q3: out of reach
+        # zero where it is stretched or folded
+        below_q3_back = (a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)
+        # zero where it is the other
+        above_q3_back = (effective_q3 + reach_back - a2)*(a2 + reach_back - effective_q3)
+        product_q3_back = above_q3_back*below_q3_back
+        refusal_back = select(product_q3_back >= -1e-12*swing_scale_q3*swing_scale_q3, 0.0, 3.0)  # q3: out of reach
         axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
-        sin_swing_q3_back_up = root(sine_square_q3_back)
-        cos_swing_q3_back = (reach_back*reach_back - a2*a2 - effective_q3*effective_q3)/swing_scale_q3
+        both_q3_back = above_q3_back + below_q3_back  # twice the scale, with the rounding of its parts
+        sum_q3_back = select(both_q3_back > 0.0, both_q3_back, 1.0)
+        sin_swing_q3_back_up = 2.0*root(product_q3_back)/sum_q3_back
+        cos_swing_q3_back = (above_q3_back - below_q3_back)/sum_q3_back
 
         def elsewhere_cos_q2_back_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE

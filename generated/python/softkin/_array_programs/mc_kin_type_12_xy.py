@@ -51,6 +51,7 @@ class ArrayPrograms(Programs):
         link_length_5 = k.link_length_5
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
+        radius_2 = k.radius_2
         swap_xy = k.swap_xy
         status = passed(axes)
         # numbers of reasonable size
@@ -81,71 +82,22 @@ class ArrayPrograms(Programs):
         apart_2_y = centre_2_y - centre_1_y
         normal_square = apart_2_x*apart_2_x + apart_2_y*apart_2_y  # normal to the centres
         # the centres coincide or lie on a line: nothing holds the plate
-        require(
-            status,
-            (
-                normal_square > 9.999999999999999e-23*link_length_2*link_length_2
-                + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy
-                + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-                - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy
-                - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy
-                - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-            ),
-            Status.IMPOSSIBLE,
-        )
-        normal_divisor = select(
-            (
-                normal_square > 9.999999999999999e-23*link_length_2*link_length_2
-                + 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy
-                + 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                + 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-                - 1.9999999999999999e-22*pivot_upper_x*pivot_upper_x*swap_xy
-                - 1.9999999999999999e-22*pivot_upper_y*pivot_upper_y*swap_xy
-                - 3.9999999999999997e-22*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-            ),
-            normal_square,
-            1.0,
-        )
-        # foot of the height, as a share
-        along_centres = (
-            0.5
-            *(
-                apart_2_x*apart_2_x + apart_2_y*apart_2_y + link_length_2*link_length_2
-                + 4.0*pivot_upper_x*pivot_upper_y*swap_xy + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-                - link_length_2*link_length_2*(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-                )/(link_length_3*link_length_3)
-            )
-            /normal_divisor
-        )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
+        require(status, normal_square > 9.999999999999999e-23*link_length_2*link_length_2, Status.IMPOSSIBLE)
+        normal_divisor = select(normal_square > 9.999999999999999e-23*link_length_2*link_length_2, normal_square, 1.0)
+        between_centres = root(normal_divisor)
         # the square of the height over the centres
         height_square = (
-            link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-            + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            - foot_x*foot_x - foot_y*foot_y - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-            - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
+            0.25*(link_length_2 + radius_2 - between_centres)*(between_centres + link_length_2 + radius_2)
+            *(between_centres + link_length_2 - radius_2)*(between_centres + radius_2 - link_length_2)/normal_divisor
         )
         # the rods do not meet
-        require(
-            status,
-            (
-                height_square >= 2e-12*pivot_upper_x*pivot_upper_x*swap_xy + 2e-12*pivot_upper_y*pivot_upper_y*swap_xy
-                + 4e-12*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy - 1e-12*link_length_2*link_length_2
-                - 4e-12*pivot_upper_x*pivot_upper_y*swap_xy - 2e-12*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                - 2e-12*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy
-            ),
-            Status.IMPOSSIBLE,
-        )
+        require(status, height_square >= -1e-12*link_length_2*link_length_2, Status.IMPOSSIBLE)
+        # foot of the height, as a share
+        along_centres = 0.5*(normal_divisor + (link_length_2 + radius_2)*(link_length_2 - radius_2))/normal_divisor
+        foot_x = along_centres*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         x = centre_1_x + foot_x - apart_2_y*rise
+        foot_y = along_centres*apart_2_y
         y = centre_1_y + foot_y + apart_2_x*rise
         span_upper_x = x + swap_xy*y - swap_xy*x  # rod upper
         span_upper_y = y + swap_xy*x - swap_xy*y  # rod upper
@@ -208,18 +160,17 @@ class ArrayPrograms(Programs):
         require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
-        # kept as a product
-        sine_square_a1 = (
-            (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_1 + link_length_2)
-            *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
-            /(swing_scale_a1*swing_scale_a1)
-        )
+        # zero where it is stretched or folded
+        below_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
+        # zero where it is the other
+        above_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
-        cos_swing_a1 = (
-            (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
-        )
-        sin_swing_a1 = -root(sine_square_a1)*sigma_t
+        require(status, product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = -2.0*root(product_a1)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
         span_rear_x = (
@@ -245,65 +196,29 @@ class ArrayPrograms(Programs):
         require(status, effective_a2 > 1e-9*link_length_5, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*link_length_5, effective_a2, 1.0)
         swing_scale_a2 = 2.0*divisor_a2*link_length_5  # a2: law of cosines in the rod rear equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                2.0*divisor_a2*link_length_2*link_length_2*link_length_5
-                + link_length_1*link_length_1*link_length_2*link_length_2
-                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                + link_length_1*link_length_1*link_length_3*link_length_3
-                + link_length_2*link_length_2*link_length_5*link_length_5
-                + link_length_2*link_length_2*span_rear_x*span_rear_x
-                + link_length_2*link_length_2*span_rear_y*span_rear_y
-                - link_length_2*link_length_2*link_length_4*link_length_4
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1
-            )
-            *(
-                2.0*divisor_a2*link_length_2*link_length_2*link_length_5
-                + link_length_2*link_length_2*link_length_4*link_length_4
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1
-                - link_length_1*link_length_1*link_length_2*link_length_2
-                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                - link_length_1*link_length_1*link_length_3*link_length_3
-                - link_length_2*link_length_2*link_length_5*link_length_5
-                - link_length_2*link_length_2*span_rear_x*span_rear_x
-                - link_length_2*link_length_2*span_rear_y*span_rear_y
-            )
-            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2*swing_scale_a2)
-        )
+        # zero where it is stretched or folded
+        below_a2 = (divisor_a2 + link_length_4 + link_length_5)*(divisor_a2 + link_length_5 - link_length_4)
+        # zero where it is the other
+        above_a2 = (link_length_4 + link_length_5 - divisor_a2)*(divisor_a2 + link_length_4 - link_length_5)
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
+        require(status, product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
-        cos_swing_a2 = (
-            (
-                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1
-                + 2.0*link_length_1*span_rear_x*sin_a1
-                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1/link_length_2
-                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1/link_length_2 - link_length_1*link_length_1
-                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
-            )
-            /swing_scale_a2
-        )
-        sin_swing_a2 = -root(sine_square_a2)*sigma_w
+        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
+        rod_1_x = x - centre_1_x
+        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
+        rod_1_y = y - centre_1_y
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*root(product_a2)*sigma_w/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
         sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
-        centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
-        rod_1_x = x - centre_1_x
-        centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
-        rod_1_y = y - centre_1_y
         centre_2_x = (
             (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
             /link_length_3
@@ -316,21 +231,7 @@ class ArrayPrograms(Programs):
         rod_2_y = y - centre_2_y
         type2_arms_aligned = (
             assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
-            /(
-                root(
-                    link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-                    + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                    + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                    - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-                )
-                *root(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                    + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                    - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-                )
-                *link_length_2
-            )
+            /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         require(status, type2_arms_aligned >= min_type2_margin, Status.UNREACHABLE)
@@ -402,18 +303,17 @@ class ArrayPrograms(Programs):
         require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
-        # kept as a product
-        sine_square_a1 = (
-            (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_1 + link_length_2)
-            *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
-            /(swing_scale_a1*swing_scale_a1)
-        )
+        # zero where it is stretched or folded
+        below_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
+        # zero where it is the other
+        above_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
-        cos_swing_a1 = (
-            (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
-        )
-        sin_swing_a1_right = root(sine_square_a1)
+        require(status, product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1_right = 2.0*root(product_a1)/sum_a1
         sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 - span_upper_y*sin_swing_a1_right/divisor_a1
         cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_right/divisor_a1
         # rod rear
@@ -443,58 +343,26 @@ class ArrayPrograms(Programs):
         # effective length that the angle turns
         effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
         divisor_a2_left = select(effective_a2_left > 1e-9*link_length_5, effective_a2_left, 1.0)
-        swing_scale_a2_left = 2.0*divisor_a2_left*link_length_5  # a2: law of cosines in the rod rear equation
-        cos_swing_a2_left = (
-            (
-                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1_left
-                + 2.0*link_length_1*span_rear_x*sin_a1_left
-                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1_left/link_length_2
-                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1_left/link_length_2 - link_length_1*link_length_1
-                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
-            )
-            /swing_scale_a2_left
+        # zero where it is stretched or folded
+        below_a2_left = (
+            (divisor_a2_left + link_length_4 + link_length_5)*(divisor_a2_left + link_length_5 - link_length_4)
         )
-        # kept as a product
-        sine_square_a2_left = (
-            (
-                2.0*divisor_a2_left*link_length_2*link_length_2*link_length_5
-                + link_length_1*link_length_1*link_length_2*link_length_2
-                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                + link_length_1*link_length_1*link_length_3*link_length_3
-                + link_length_2*link_length_2*link_length_5*link_length_5
-                + link_length_2*link_length_2*span_rear_x*span_rear_x
-                + link_length_2*link_length_2*span_rear_y*span_rear_y
-                - link_length_2*link_length_2*link_length_4*link_length_4
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_left
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_left
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_left
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_left
-            )
-            *(
-                2.0*divisor_a2_left*link_length_2*link_length_2*link_length_5
-                + link_length_2*link_length_2*link_length_4*link_length_4
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_left
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_left
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_left
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_left
-                - link_length_1*link_length_1*link_length_2*link_length_2
-                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                - link_length_1*link_length_1*link_length_3*link_length_3
-                - link_length_2*link_length_2*link_length_5*link_length_5
-                - link_length_2*link_length_2*span_rear_x*span_rear_x
-                - link_length_2*link_length_2*span_rear_y*span_rear_y
-            )
-            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2_left*swing_scale_a2_left)
+        # zero where it is the other
+        above_a2_left = (
+            (link_length_4 + link_length_5 - divisor_a2_left)*(divisor_a2_left + link_length_4 - link_length_5)
         )
-        sin_swing_a2_left_right = root(sine_square_a2_left)
+        both_a2_left = above_a2_left + below_a2_left  # twice the scale, with the rounding of its parts
+        sum_a2_left = select(both_a2_left > 0.0, both_a2_left, 1.0)
+        cos_swing_a2_left = (above_a2_left - below_a2_left)/sum_a2_left
+        product_a2_left = above_a2_left*below_a2_left
+        sin_swing_a2_left_right = 2.0*root(product_a2_left)/sum_a2_left
         cos_a2_left_left = (
             across_a2_left*sin_swing_a2_left_right/divisor_a2_left + along_a2_left*cos_swing_a2_left/divisor_a2_left
         )
         sin_a2_left_left = (
             across_a2_left*cos_swing_a2_left/divisor_a2_left - along_a2_left*sin_swing_a2_left_right/divisor_a2_left
         )
+        swing_scale_a2_left = 2.0*divisor_a2_left*link_length_5  # a2: law of cosines in the rod rear equation
         cos_a2_left_right = (
             along_a2_left*cos_swing_a2_left/divisor_a2_left - across_a2_left*sin_swing_a2_left_right/divisor_a2_left
         )
@@ -509,6 +377,10 @@ class ArrayPrograms(Programs):
 
         pivot_upper_x_left = -link_length_1*sin_a1_left  # rod upper
         pivot_upper_y_left = -link_length_1*cos_a1_left  # rod upper
+        centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
+        rod_1_x_left = x - centre_1_x_left
+        centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
+        rod_1_y_left = y - centre_1_y_left
         # rod rear
         pivot_rear_x_left_left = (
             link_length_1*sin_a1_left + link_length_1*link_length_3*sin_a1_left/link_length_2
@@ -519,10 +391,6 @@ class ArrayPrograms(Programs):
             link_length_1*cos_a1_left + link_length_5*sin_a2_left_left
             + link_length_1*link_length_3*cos_a1_left/link_length_2
         )
-        centre_1_x_left = pivot_upper_x_left + pivot_upper_y_left*swap_xy - pivot_upper_x_left*swap_xy
-        rod_1_x_left = x - centre_1_x_left
-        centre_1_y_left = pivot_upper_y_left + pivot_upper_x_left*swap_xy - pivot_upper_y_left*swap_xy
-        rod_1_y_left = y - centre_1_y_left
         centre_2_x_left_left = (
             (
                 link_length_2*pivot_rear_x_left_left*swap_xy - link_length_2*pivot_rear_x_left_left
@@ -541,25 +409,7 @@ class ArrayPrograms(Programs):
         rod_2_y_left_left = y - centre_2_y_left_left
         type2_arms_aligned_left_left = (
             assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_left - rod_1_y_left*rod_2_x_left_left)
-            /(
-                root(
-                    link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                    + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                    + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                    - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                    - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                    - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
-                )
-                *root(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy
-                    + 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy*swap_xy
-                    + 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x_left_left*pivot_rear_x_left_left*swap_xy
-                    - 2.0*pivot_rear_y_left_left*pivot_rear_y_left_left*swap_xy
-                    - 4.0*pivot_rear_x_left_left*pivot_rear_y_left_left*swap_xy*swap_xy
-                )
-                *link_length_2
-            )
+            /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_left = select(type2_arms_aligned_left_left >= min_type2_margin, 0.0, 3.0)
@@ -591,30 +441,15 @@ class ArrayPrograms(Programs):
         rod_2_y_left_right = y - centre_2_y_left_right
         type2_arms_aligned_left_right = (
             assembly_sign*link_length_3*(rod_1_x_left*rod_2_y_left_right - rod_1_y_left*rod_2_x_left_right)
-            /(
-                root(
-                    link_length_2*link_length_2 + 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy
-                    + 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy*swap_xy
-                    + 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy*swap_xy
-                    - 2.0*pivot_upper_x_left*pivot_upper_x_left*swap_xy
-                    - 2.0*pivot_upper_y_left*pivot_upper_y_left*swap_xy
-                    - 4.0*pivot_upper_x_left*pivot_upper_y_left*swap_xy*swap_xy
-                )
-                *root(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy
-                    + 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy*swap_xy
-                    + 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x_left_right*pivot_rear_x_left_right*swap_xy
-                    - 2.0*pivot_rear_y_left_right*pivot_rear_y_left_right*swap_xy
-                    - 4.0*pivot_rear_x_left_right*pivot_rear_y_left_right*swap_xy*swap_xy
-                )
-                *link_length_2
-            )
+            /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_left_right = select(type2_arms_aligned_left_right >= min_type2_margin, 0.0, 3.0)
         refusal_left_left, refusal_left_right = elsewhere(
-            (sine_square_a2_left >= -1e-12) & (effective_a2_left > 1e-9*link_length_5),
+            (
+                (effective_a2_left > 1e-9*link_length_5)
+                & (product_a2_left >= -1e-12*swing_scale_a2_left*swing_scale_a2_left)
+            ),
             (refusal_left_left, refusal_left_right),
             elsewhere_refusal_left_left,
             (),
@@ -655,52 +490,19 @@ class ArrayPrograms(Programs):
         # effective length that the angle turns
         effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
         divisor_a2_right = select(effective_a2_right > 1e-9*link_length_5, effective_a2_right, 1.0)
-        swing_scale_a2_right = 2.0*divisor_a2_right*link_length_5  # a2: law of cosines in the rod rear equation
-        cos_swing_a2_right = (
-            (
-                link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1_right
-                + 2.0*link_length_1*span_rear_x*sin_a1_right
-                + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1_right/link_length_2
-                + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1_right/link_length_2 - link_length_1*link_length_1
-                - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-                - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-                - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
-            )
-            /swing_scale_a2_right
+        # zero where it is stretched or folded
+        below_a2_right = (
+            (divisor_a2_right + link_length_4 + link_length_5)*(divisor_a2_right + link_length_5 - link_length_4)
         )
-        # kept as a product
-        sine_square_a2_right = (
-            (
-                2.0*divisor_a2_right*link_length_2*link_length_2*link_length_5
-                + link_length_1*link_length_1*link_length_2*link_length_2
-                + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                + link_length_1*link_length_1*link_length_3*link_length_3
-                + link_length_2*link_length_2*link_length_5*link_length_5
-                + link_length_2*link_length_2*span_rear_x*span_rear_x
-                + link_length_2*link_length_2*span_rear_y*span_rear_y
-                - link_length_2*link_length_2*link_length_4*link_length_4
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_right
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_right
-                - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_right
-                - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_right
-            )
-            *(
-                2.0*divisor_a2_right*link_length_2*link_length_2*link_length_5
-                + link_length_2*link_length_2*link_length_4*link_length_4
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1_right
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1_right
-                + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1_right
-                + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1_right
-                - link_length_1*link_length_1*link_length_2*link_length_2
-                - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-                - link_length_1*link_length_1*link_length_3*link_length_3
-                - link_length_2*link_length_2*link_length_5*link_length_5
-                - link_length_2*link_length_2*span_rear_x*span_rear_x
-                - link_length_2*link_length_2*span_rear_y*span_rear_y
-            )
-            /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2_right*swing_scale_a2_right)
+        # zero where it is the other
+        above_a2_right = (
+            (link_length_4 + link_length_5 - divisor_a2_right)*(divisor_a2_right + link_length_4 - link_length_5)
         )
-        sin_swing_a2_right_right = root(sine_square_a2_right)
+        both_a2_right = above_a2_right + below_a2_right  # twice the scale, with the rounding of its parts
+        sum_a2_right = select(both_a2_right > 0.0, both_a2_right, 1.0)
+        cos_swing_a2_right = (above_a2_right - below_a2_right)/sum_a2_right
+        product_a2_right = above_a2_right*below_a2_right
+        sin_swing_a2_right_right = 2.0*root(product_a2_right)/sum_a2_right
         cos_a2_right_left = (
             across_a2_right*sin_swing_a2_right_right/divisor_a2_right
             + along_a2_right*cos_swing_a2_right/divisor_a2_right
@@ -709,6 +511,7 @@ class ArrayPrograms(Programs):
             across_a2_right*cos_swing_a2_right/divisor_a2_right
             - along_a2_right*sin_swing_a2_right_right/divisor_a2_right
         )
+        swing_scale_a2_right = 2.0*divisor_a2_right*link_length_5  # a2: law of cosines in the rod rear equation
         cos_a2_right_right = (
             along_a2_right*cos_swing_a2_right/divisor_a2_right
             - across_a2_right*sin_swing_a2_right_right/divisor_a2_right
@@ -725,6 +528,10 @@ class ArrayPrograms(Programs):
 
         pivot_upper_x_right = -link_length_1*sin_a1_right  # rod upper
         pivot_upper_y_right = -link_length_1*cos_a1_right  # rod upper
+        centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
+        rod_1_x_right = x - centre_1_x_right
+        centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
+        rod_1_y_right = y - centre_1_y_right
         # rod rear
         pivot_rear_x_right_left = (
             link_length_1*sin_a1_right + link_length_1*link_length_3*sin_a1_right/link_length_2
@@ -735,10 +542,6 @@ class ArrayPrograms(Programs):
             link_length_1*cos_a1_right + link_length_5*sin_a2_right_left
             + link_length_1*link_length_3*cos_a1_right/link_length_2
         )
-        centre_1_x_right = pivot_upper_x_right + pivot_upper_y_right*swap_xy - pivot_upper_x_right*swap_xy
-        rod_1_x_right = x - centre_1_x_right
-        centre_1_y_right = pivot_upper_y_right + pivot_upper_x_right*swap_xy - pivot_upper_y_right*swap_xy
-        rod_1_y_right = y - centre_1_y_right
         centre_2_x_right_left = (
             (
                 link_length_2*pivot_rear_x_right_left*swap_xy - link_length_2*pivot_rear_x_right_left
@@ -757,25 +560,7 @@ class ArrayPrograms(Programs):
         rod_2_y_right_left = y - centre_2_y_right_left
         type2_arms_aligned_right_left = (
             assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_left - rod_1_y_right*rod_2_x_right_left)
-            /(
-                root(
-                    link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                    + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                    + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                    - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                    - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                    - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
-                )
-                *root(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy
-                    + 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy*swap_xy
-                    + 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x_right_left*pivot_rear_x_right_left*swap_xy
-                    - 2.0*pivot_rear_y_right_left*pivot_rear_y_right_left*swap_xy
-                    - 4.0*pivot_rear_x_right_left*pivot_rear_y_right_left*swap_xy*swap_xy
-                )
-                *link_length_2
-            )
+            /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_left = select(type2_arms_aligned_right_left >= min_type2_margin, 0.0, 3.0)
@@ -807,30 +592,15 @@ class ArrayPrograms(Programs):
         rod_2_y_right_right = y - centre_2_y_right_right
         type2_arms_aligned_right_right = (
             assembly_sign*link_length_3*(rod_1_x_right*rod_2_y_right_right - rod_1_y_right*rod_2_x_right_right)
-            /(
-                root(
-                    link_length_2*link_length_2 + 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy
-                    + 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy*swap_xy
-                    + 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy*swap_xy
-                    - 2.0*pivot_upper_x_right*pivot_upper_x_right*swap_xy
-                    - 2.0*pivot_upper_y_right*pivot_upper_y_right*swap_xy
-                    - 4.0*pivot_upper_x_right*pivot_upper_y_right*swap_xy*swap_xy
-                )
-                *root(
-                    link_length_4*link_length_4 + 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy
-                    + 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy*swap_xy
-                    + 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                    - 2.0*pivot_rear_x_right_right*pivot_rear_x_right_right*swap_xy
-                    - 2.0*pivot_rear_y_right_right*pivot_rear_y_right_right*swap_xy
-                    - 4.0*pivot_rear_x_right_right*pivot_rear_y_right_right*swap_xy*swap_xy
-                )
-                *link_length_2
-            )
+            /(link_length_4*link_length_2*link_length_2)
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
         refusal_right_right = select(type2_arms_aligned_right_right >= min_type2_margin, 0.0, 3.0)
         refusal_right_left, refusal_right_right = elsewhere(
-            (sine_square_a2_right >= -1e-12) & (effective_a2_right > 1e-9*link_length_5),
+            (
+                (effective_a2_right > 1e-9*link_length_5)
+                & (product_a2_right >= -1e-12*swing_scale_a2_right*swing_scale_a2_right)
+            ),
             (refusal_right_left, refusal_right_right),
             elsewhere_refusal_right_left,
             (),

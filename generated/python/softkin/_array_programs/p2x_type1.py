@@ -57,19 +57,23 @@ class ArrayPrograms(Programs):
         # the centres coincide or lie on a line: nothing holds the plate
         require(status, normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1, Status.IMPOSSIBLE)
         normal_divisor = select(normal_square > 9.999999999999999e-23*arm_length_1*arm_length_1, normal_square, 1.0)
-        # foot of the height, as a share
-        along_centres = (
-            0.5*(apart_2_x*apart_2_x + apart_2_y*apart_2_y + arm_length_1*arm_length_1 - arm_length_2*arm_length_2)
+        between_centres = root(normal_divisor)
+        # the square of the height over the centres
+        height_square = (
+            0.25*(arm_length_2 + between_centres - arm_length_1)*(arm_length_1 + arm_length_2 + between_centres)
+            *(arm_length_1 + arm_length_2 - between_centres)*(arm_length_1 + between_centres - arm_length_2)
             /normal_divisor
         )
-        foot_x = along_centres*apart_2_x
-        foot_y = along_centres*apart_2_y
-        # the square of the height over the centres
-        height_square = arm_length_1*arm_length_1 - foot_x*foot_x - foot_y*foot_y
         # the rods do not meet
         require(status, height_square >= -1e-12*arm_length_1*arm_length_1, Status.IMPOSSIBLE)
+        # foot of the height, as a share
+        along_centres = (
+            0.5*(normal_divisor + (arm_length_1 + arm_length_2)*(arm_length_1 - arm_length_2))/normal_divisor
+        )
+        foot_x = along_centres*apart_2_x
         rise = root(height_square/normal_divisor)*assembly_sign
         x = foot_x + pivot_1_x - apart_2_y*rise
+        foot_y = along_centres*apart_2_y
         y = foot_y + rail_y_1 + apart_2_x*rise
         span_1_x = x - tcp_offset_1  # rod 1
         branch_carriage_1 = (span_1_x - a1)/arm_length_1

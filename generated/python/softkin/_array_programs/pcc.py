@@ -87,16 +87,17 @@ class ArrayPrograms(Programs):
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
-        # kept as a product
-        sine_square_a2_from_a1 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
-            /(scale_a2_from_a1*scale_a2_from_a1)
-        )
+        # zero where it is stretched or folded
+        below_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # zero where it is the other
+        above_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
         # a2_from_a1: out of reach
-        require(status, sine_square_a2_from_a1 >= -1e-12, Status.UNREACHABLE)
-        cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
-        sin_a2_from_a1 = root(sine_square_a2_from_a1)*sigma_elbow
+        require(status, product_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1, Status.UNREACHABLE)
+        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
+        sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
+        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1 = 2.0*root(product_a2_from_a1)*sigma_elbow/sum_a2_from_a1
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -183,16 +184,17 @@ class ArrayPrograms(Programs):
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
-        # kept as a product
-        sine_square_a2_from_a1 = (
-            (link_length_2 + reach - link_length_1)*(link_length_1 + link_length_2 + reach)
-            *(link_length_1 + link_length_2 - reach)*(link_length_1 + reach - link_length_2)
-            /(scale_a2_from_a1*scale_a2_from_a1)
-        )
+        # zero where it is stretched or folded
+        below_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # zero where it is the other
+        above_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
         # a2_from_a1: out of reach
-        require(status, sine_square_a2_from_a1 >= -1e-12, Status.UNREACHABLE)
-        cos_a2_from_a1 = (reach*reach - link_length_1*link_length_1 - link_length_2*link_length_2)/scale_a2_from_a1
-        sin_a2_from_a1_right = root(sine_square_a2_from_a1)
+        require(status, product_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1, Status.UNREACHABLE)
+        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
+        sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
+        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1_right = 2.0*root(product_a2_from_a1)/sum_a2_from_a1
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE

@@ -46,11 +46,11 @@ class ArrayPrograms(Programs):
         arm_length_1 = k.arm_length_1
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
-        distance = k.distance
+        fixed_length_1 = k.fixed_length_1
+        fixed_length_2 = k.fixed_length_2
         offset_a1 = k.offset_a1
         offset_a2 = k.offset_a2
         offset_a3 = k.offset_a3
-        stewart_radius = k.stewart_radius
         status = passed(axes)
         # numbers of reasonable size
         require(
@@ -61,68 +61,26 @@ class ArrayPrograms(Programs):
         a2 = DEGREE*(axis_a2 - offset_a2)
         cos_a2 = cos(a2)
         # rod 2
-        pivot_2_y = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2
-        )
+        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
         a3 = DEGREE*(axis_a3 - offset_a3)
         cos_a3 = cos(a3)
         # rod 3
-        pivot_3_y = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
         a1 = DEGREE*(axis_a1 - offset_a1)
         sin_a1 = sin(a1)
-        # rod 1
-        pivot_1_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         sin_a2 = sin(a2)
-        # rod 2
-        pivot_2_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         apart_2_z = pivot_2_z - pivot_1_z
         sin_a3 = sin(a3)
-        # rod 3
-        pivot_3_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         apart_3_z = pivot_3_z - pivot_1_z
         normal_x = apart_3_z*pivot_2_y - apart_2_z*pivot_3_y
         cos_a1 = cos(a1)
-        # rod 1
-        pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
-        # rod 2
-        pivot_2_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
+        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         apart_2_x = pivot_2_x - pivot_1_x
-        # rod 3
-        pivot_3_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         apart_3_x = pivot_3_x - pivot_1_x
         normal_y = apart_2_z*apart_3_x - apart_2_x*apart_3_z
         normal_z = apart_2_x*pivot_3_y - apart_3_x*pivot_2_y
@@ -160,30 +118,13 @@ class ArrayPrograms(Programs):
         x = foot_x + pivot_1_x + normal_x*rise
         y = foot_y + normal_y*rise
         z = foot_z + pivot_1_z + normal_z*rise
-        span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
-        # rod 1
-        span_1_z = (
-            z
-            - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-        )
+        span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
+        span_1_z = z - fixed_length_2  # rod 1
         branch_knee_1 = (span_1_x*sin_a1 - span_1_z*cos_a1)/arm_length_2
-        span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
-        # rod 2
-        span_2_y = (
-            y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
+        span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         branch_knee_2 = 0.5*(root(3.0)*span_2_y*sin_a2 - 2.0*span_1_z*cos_a2 - span_2_x*sin_a2)/arm_length_2
-        # rod 3
-        span_3_y = (
-            y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         branch_knee_3 = 0.5*(-2.0*span_1_z*cos_a3 - span_2_x*sin_a3 - root(3.0)*span_3_y*sin_a3)/arm_length_2
         return (
             (
@@ -207,7 +148,8 @@ class ArrayPrograms(Programs):
         arm_length_1 = k.arm_length_1
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
-        distance = k.distance
+        fixed_length_1 = k.fixed_length_1
+        fixed_length_2 = k.fixed_length_2
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -219,7 +161,6 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        stewart_radius = k.stewart_radius
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -228,42 +169,23 @@ class ArrayPrograms(Programs):
             (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
             Status.BAD_INPUT,
         )
-        span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
-        # rod 1
-        span_1_z = (
-            z
-            - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-        )
+        span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
+        span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*arm_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*arm_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (
-                2.0*arm_length_1*divisor_a1 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1
-                - divisor_a1*divisor_a1 - y*y
-            )
-            *(
-                arm_length_1*arm_length_1 + 2.0*arm_length_1*divisor_a1 + divisor_a1*divisor_a1 + y*y
-                - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a1*swing_scale_a1)
-        )
+        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
+        # zero where it is stretched or folded
+        below_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+        # zero where it is the other
+        above_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
-        span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
-        # rod 2
-        span_2_y = (
-            y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        require(status, product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
+        span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
@@ -271,130 +193,72 @@ class ArrayPrograms(Programs):
         require(status, effective_a2 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 5e-10*arm_length_1, effective_a2, 1.0)
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                arm_length_1*divisor_a2 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_2_y*span_2_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_2_y*span_2_y - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a2*swing_scale_a2)
+        # square of the third side
+        third_square_a2 = (
+            (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+            *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
         )
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
+        # zero where it is the other
+        above_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
-        # rod 3
-        span_3_y = (
-            y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        require(status, product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 5e-10*arm_length_1, effective_a3, 1.0)
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (
-                arm_length_1*divisor_a3 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_3_y*span_3_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_3_y*span_3_y - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
+            *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
         )
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
+        # zero where it is the other
+        above_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        product_a3 = above_a3*below_a3
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
-        cos_swing_a1 = (
-            (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
-        )
-        sin_swing_a1 = root(sine_square_a1)*sigma_knee_1
+        require(status, product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = 2.0*root(product_a1)*sigma_knee_1/sum_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
+        pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        cos_swing_a2 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a2
-        )
-        sin_swing_a2 = -root(sine_square_a2)*sigma_knee_2
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*root(product_a2)*sigma_knee_2/sum_a2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         rod_2_x = x - pivot_2_x
         # rod 2
-        pivot_2_y = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2
-        )
+        pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        cos_swing_a3 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a3
-        )
-        sin_swing_a3 = -root(sine_square_a3)*sigma_knee_3
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
+        sin_swing_a3 = -2.0*root(product_a3)*sigma_knee_3/sum_a3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_x = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         rod_3_x = x - pivot_3_x
         # rod 3
-        pivot_3_y = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
             assembly_sign
@@ -472,7 +336,8 @@ class ArrayPrograms(Programs):
         arm_length_1 = k.arm_length_1
         arm_length_2 = k.arm_length_2
         assembly_sign = k.assembly_sign
-        distance = k.distance
+        fixed_length_1 = k.fixed_length_1
+        fixed_length_2 = k.fixed_length_2
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
         mid_a3 = k.mid_a3
@@ -484,7 +349,6 @@ class ArrayPrograms(Programs):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
-        stewart_radius = k.stewart_radius
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -493,42 +357,23 @@ class ArrayPrograms(Programs):
             (absolute(ref_a1) <= 1e9) & (absolute(ref_a2) <= 1e9) & (absolute(ref_a3) <= 1e9),
             Status.BAD_INPUT,
         )
-        span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)  # rod 1
-        span_1_z_squared = stewart_radius*stewart_radius - 0.25*distance*distance
-        # rod 1
-        span_1_z = (
-            z
-            - root(
-                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-        )
+        span_1_x = arm_1_radius + x - fixed_length_1  # rod 1
+        span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         require(status, effective_a1 > 1e-9*arm_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*arm_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (
-                2.0*arm_length_1*divisor_a1 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1
-                - divisor_a1*divisor_a1 - y*y
-            )
-            *(
-                arm_length_1*arm_length_1 + 2.0*arm_length_1*divisor_a1 + divisor_a1*divisor_a1 + y*y
-                - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a1*swing_scale_a1)
-        )
+        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
+        # zero where it is stretched or folded
+        below_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+        # zero where it is the other
+        above_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        product_a1 = above_a1*below_a1
         # a1: out of reach
-        require(status, sine_square_a1 >= -1e-12, Status.UNREACHABLE)
-        span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius  # rod 2
-        # rod 2
-        span_2_y = (
-            y + 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        )
+        require(status, product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
+        span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
@@ -536,45 +381,37 @@ class ArrayPrograms(Programs):
         require(status, effective_a2 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 5e-10*arm_length_1, effective_a2, 1.0)
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                arm_length_1*divisor_a2 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_2_y*span_2_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_2_y*span_2_y - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a2*swing_scale_a2)
+        # square of the third side
+        third_square_a2 = (
+            (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+            *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
         )
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
+        # zero where it is the other
+        above_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        product_a2 = above_a2*below_a2
         # a2: out of reach
-        require(status, sine_square_a2 >= -1e-12, Status.UNREACHABLE)
-        # rod 3
-        span_3_y = (
-            y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-            - 0.5*root(3.0)*arm_1_radius
-        )
+        require(status, product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
         require(status, effective_a3 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 5e-10*arm_length_1, effective_a3, 1.0)
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (
-                arm_length_1*divisor_a3 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_3_y*span_3_y
-            )
-            *(
-                arm_length_1*arm_length_1 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_3_y*span_3_y - arm_length_2*arm_length_2
-            )
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
+            *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
         )
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
+        # zero where it is the other
+        above_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        product_a3 = above_a3*below_a3
         # a3: out of reach
-        require(status, sine_square_a3 >= -1e-12, Status.UNREACHABLE)
+        require(status, product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
         # ball joint of rod 1
         require(status, absolute(y)/arm_length_2 <= sin_max_angle_ball_joint, Status.UNREACHABLE)
         # ball joint of rod 2
@@ -587,90 +424,45 @@ class ArrayPrograms(Programs):
             status, absolute(0.5*root(3.0)*x/arm_length_2 - 0.5*y/arm_length_2) <= sin_max_angle_ball_joint,
             Status.UNREACHABLE,
         )
-        cos_swing_a1 = (
-            (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
-        )
-        sin_swing_a1_outward = root(sine_square_a1)
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1_outward = 2.0*root(product_a1)/sum_a1
         cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1_outward/divisor_a1
-        # rod 1
-        pivot_1_x_outward = (
-            root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1_outward
-        )
+        pivot_1_x_outward = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1_outward  # rod 1
         rod_1_x_outward = x - pivot_1_x_outward
         sin_a1_outward = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
-        # rod 1
-        pivot_1_z_outward = (
-            root(
-                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1_outward
-        )
+        pivot_1_z_outward = fixed_length_2 - arm_length_1*sin_a1_outward  # rod 1
         rod_1_z_outward = z - pivot_1_z_outward
-        cos_swing_a2 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a2
-        )
-        sin_swing_a2_inward = root(sine_square_a2)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2_inward = 2.0*root(product_a2)/sum_a2
         cos_a2_outward = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2_inward/divisor_a2
-        # rod 2
-        pivot_2_x_outward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_outward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_2_x_outward = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_outward - 0.5*fixed_length_1  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward
         # rod 2
         pivot_2_y_outward = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2_outward
+            0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2_outward
         )
         rod_2_y_outward = y - pivot_2_y_outward
         sin_a2_outward = -across_a2*cos_swing_a2/divisor_a2 - along_a2*sin_swing_a2_inward/divisor_a2
-        # rod 2
-        pivot_2_z_outward = (
-            root(
-                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2_outward
-        )
+        pivot_2_z_outward = fixed_length_2 - arm_length_1*sin_a2_outward  # rod 2
         rod_2_z_outward = z - pivot_2_z_outward
-        cos_swing_a3 = (
-            (
-                arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y
-                - arm_length_2*arm_length_2
-            )
-            /swing_scale_a3
-        )
-        sin_swing_a3_inward = root(sine_square_a3)
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
+        sin_swing_a3_inward = 2.0*root(product_a3)/sum_a3
         cos_a3_outward = along_a3*cos_swing_a3/divisor_a3 - across_a2*sin_swing_a3_inward/divisor_a3
-        # rod 3
-        pivot_3_x_outward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_outward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x_outward = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_outward - 0.5*fixed_length_1  # rod 3
         rod_3_x_outward = x - pivot_3_x_outward
         # rod 3
         pivot_3_y_outward = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3_outward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
+            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3_outward - 0.5*root(3.0)*fixed_length_1
         )
         rod_3_y_outward = y - pivot_3_y_outward
         sin_a3_outward = -across_a2*cos_swing_a3/divisor_a3 - along_a3*sin_swing_a3_inward/divisor_a3
-        # rod 3
-        pivot_3_z_outward = (
-            root(
-                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3_outward
-        )
+        pivot_3_z_outward = fixed_length_2 - arm_length_1*sin_a3_outward  # rod 3
         rod_3_z_outward = z - pivot_3_z_outward
         type2_rods_coplanar_outward_outward_outward = (
             assembly_sign
@@ -707,28 +499,15 @@ class ArrayPrograms(Programs):
         )
         axis_a3_outward = nearest_period(offset_a3 + degrees(sin_a3_outward, cos_a3_outward), near_a3)  # A3: its turn
         cos_a3_inward = across_a2*sin_swing_a3_inward/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_x_inward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_3_x_inward = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3_inward - 0.5*fixed_length_1  # rod 3
         rod_3_x_inward = x - pivot_3_x_inward
         # rod 3
         pivot_3_y_inward = (
-            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
+            0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3_inward - 0.5*root(3.0)*fixed_length_1
         )
         rod_3_y_inward = y - pivot_3_y_inward
         sin_a3_inward = along_a3*sin_swing_a3_inward/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_z_inward = (
-            root(
-                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3_inward
-        )
+        pivot_3_z_inward = fixed_length_2 - arm_length_1*sin_a3_inward  # rod 3
         rod_3_z_inward = z - pivot_3_z_inward
         type2_rods_coplanar_outward_outward_inward = (
             assembly_sign
@@ -745,28 +524,15 @@ class ArrayPrograms(Programs):
         )
         axis_a3_inward = nearest_period(offset_a3 + degrees(sin_a3_inward, cos_a3_inward), near_a3)  # A3: its turn
         cos_a2_inward = across_a2*sin_swing_a2_inward/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_x_inward = (
-            0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_inward
-            - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-        )
+        pivot_2_x_inward = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2_inward - 0.5*fixed_length_1  # rod 2
         rod_2_x_inward = x - pivot_2_x_inward
         # rod 2
         pivot_2_y_inward = (
-            0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-            - 0.5*root(3.0)*arm_length_1*cos_a2_inward
+            0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2_inward
         )
         rod_2_y_inward = y - pivot_2_y_inward
         sin_a2_inward = along_a2*sin_swing_a2_inward/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_z_inward = (
-            root(
-                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2_inward
-        )
+        pivot_2_z_inward = fixed_length_2 - arm_length_1*sin_a2_inward  # rod 2
         rod_2_z_inward = z - pivot_2_z_inward
         type2_rods_coplanar_outward_inward_outward = (
             assembly_sign
@@ -796,21 +562,10 @@ class ArrayPrograms(Programs):
             type2_rods_coplanar_outward_inward_inward >= min_type2_margin, 0.0, 3.0,
         )
         cos_a1_inward = span_1_x*cos_swing_a1/divisor_a1 + span_1_z*sin_swing_a1_outward/divisor_a1
-        # rod 1
-        pivot_1_x_inward = (
-            root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1_inward
-        )
+        pivot_1_x_inward = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1_inward  # rod 1
         rod_1_x_inward = x - pivot_1_x_inward
         sin_a1_inward = span_1_z*cos_swing_a1/divisor_a1 - span_1_x*sin_swing_a1_outward/divisor_a1
-        # rod 1
-        pivot_1_z_inward = (
-            root(
-                2.0*root(span_1_z_squared)*arm_1_radius + 2.0*root(span_1_z_squared)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1_inward
-        )
+        pivot_1_z_inward = fixed_length_2 - arm_length_1*sin_a1_inward  # rod 1
         rod_1_z_inward = z - pivot_1_z_inward
         type2_rods_coplanar_inward_outward_outward = (
             assembly_sign

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._configuration import turn_inside
-from softkin._scalar import DEGREE, arctan2, nearest_period, root, sqrt
+from softkin._scalar import DEGREE, arctan2, nearest_period, sqrt
 from softkin._types import Diagnosis, Reals, Rotation, Status, Vector
 
 if TYPE_CHECKING:
@@ -52,22 +52,20 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
     divisor_a1 = effective_a1 if effective_a1 > 1e-9*link_length_1 else 1.0
     swing_scale_a1 = 2.0*divisor_a1*link_length_1
-    sine_square_a1 = (
-        (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_1 + link_length_2)
-        *(divisor_a1 + link_length_1 - link_length_2)*(divisor_a1 + link_length_2 - link_length_1)
-        /(swing_scale_a1*swing_scale_a1)
-    )
-    if not (sine_square_a1 >= -1e-12):
+    below_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
+    above_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
+    product_a1 = above_a1*below_a1
+    if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
         missing = (
             0.5*abs(link_length_1 + link_length_2 - divisor_a1) + 0.5*abs(divisor_a1 + link_length_2 - link_length_1)
             + 0.5*abs(divisor_a1 + link_length_1 - link_length_2)
             + 0.5*abs(divisor_a1 + link_length_1 + link_length_2) - divisor_a1 - link_length_1 - link_length_2
         )
         return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-    cos_swing_a1 = (
-        (link_length_2*link_length_2 - divisor_a1*divisor_a1 - link_length_1*link_length_1)/swing_scale_a1
-    )
-    sin_swing_a1 = -(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t
+    both_a1 = above_a1 + below_a1
+    sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+    cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+    sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_t/sum_a1
     sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
     span_rear_x = (
         link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
@@ -91,62 +89,30 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
     divisor_a2 = effective_a2 if effective_a2 > 1e-9*link_length_5 else 1.0
     swing_scale_a2 = 2.0*divisor_a2*link_length_5
-    sine_square_a2 = (
-        (
-            2.0*divisor_a2*link_length_2*link_length_2*link_length_5
-            + link_length_1*link_length_1*link_length_2*link_length_2
-            + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-            + link_length_1*link_length_1*link_length_3*link_length_3
-            + link_length_2*link_length_2*link_length_5*link_length_5
-            + link_length_2*link_length_2*span_rear_x*span_rear_x
-            + link_length_2*link_length_2*span_rear_y*span_rear_y
-            - link_length_2*link_length_2*link_length_4*link_length_4
-            - 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1
-            - 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1
-            - 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1
-            - 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1
+    below_a2 = (divisor_a2 + link_length_4 + link_length_5)*(divisor_a2 + link_length_5 - link_length_4)
+    above_a2 = (link_length_4 + link_length_5 - divisor_a2)*(divisor_a2 + link_length_4 - link_length_5)
+    product_a2 = above_a2*below_a2
+    if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        missing = (
+            0.5*abs(link_length_4 + link_length_5 - divisor_a2) + 0.5*abs(divisor_a2 + link_length_5 - link_length_4)
+            + 0.5*abs(divisor_a2 + link_length_4 - link_length_5)
+            + 0.5*abs(divisor_a2 + link_length_4 + link_length_5) - divisor_a2 - link_length_4 - link_length_5
         )
-        *(
-            2.0*divisor_a2*link_length_2*link_length_2*link_length_5
-            + link_length_2*link_length_2*link_length_4*link_length_4
-            + 2.0*link_length_1*link_length_2*link_length_2*span_rear_y*cos_a1
-            + 2.0*link_length_1*link_length_2*link_length_3*span_rear_y*cos_a1
-            + 2.0*link_length_1*link_length_2*link_length_2*span_rear_x*sin_a1
-            + 2.0*link_length_1*link_length_2*link_length_3*span_rear_x*sin_a1
-            - link_length_1*link_length_1*link_length_2*link_length_2
-            - 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-            - link_length_1*link_length_1*link_length_3*link_length_3
-            - link_length_2*link_length_2*link_length_5*link_length_5
-            - link_length_2*link_length_2*span_rear_x*span_rear_x
-            - link_length_2*link_length_2*span_rear_y*span_rear_y
-        )
-        /(link_length_2*link_length_2*link_length_2*link_length_2*swing_scale_a2*swing_scale_a2)
-    )
-    if not (sine_square_a2 >= -1e-12):
-        return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
+        return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
     pivot_upper_x = -link_length_1*sin_a1
     pivot_upper_y = -link_length_1*cos_a1
-    cos_swing_a2 = (
-        (
-            link_length_4*link_length_4 + 2.0*link_length_1*span_rear_y*cos_a1
-            + 2.0*link_length_1*span_rear_x*sin_a1
-            + 2.0*link_length_1*link_length_3*span_rear_y*cos_a1/link_length_2
-            + 2.0*link_length_1*link_length_3*span_rear_x*sin_a1/link_length_2 - link_length_1*link_length_1
-            - link_length_5*link_length_5 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-            - 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-            - link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
-        )
-        /swing_scale_a2
-    )
-    sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w
-    cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
-    pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
-    sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
-    pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
     centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
     rod_1_x = x - centre_1_x
     centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
     rod_1_y = y - centre_1_y
+    both_a2 = above_a2 + below_a2
+    sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+    cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+    sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_w/sum_a2
+    cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
+    pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
+    sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
+    pivot_rear_y = link_length_1*cos_a1 + link_length_5*sin_a2 + link_length_1*link_length_3*cos_a1/link_length_2
     centre_2_x = (
         (link_length_2*pivot_rear_x*swap_xy - link_length_2*pivot_rear_x - link_length_2*pivot_rear_y*swap_xy)
         /link_length_3
@@ -159,21 +125,7 @@ def branch(
     rod_2_y = y - centre_2_y
     type2_arms_aligned = (
         assembly_sign*link_length_3*(rod_1_x*rod_2_y - rod_1_y*rod_2_x)
-        /(
-            root(
-                link_length_2*link_length_2 + 4.0*pivot_upper_x*pivot_upper_y*swap_xy
-                + 2.0*pivot_upper_x*pivot_upper_x*swap_xy*swap_xy
-                + 2.0*pivot_upper_y*pivot_upper_y*swap_xy*swap_xy - 2.0*pivot_upper_x*pivot_upper_x*swap_xy
-                - 2.0*pivot_upper_y*pivot_upper_y*swap_xy - 4.0*pivot_upper_x*pivot_upper_y*swap_xy*swap_xy
-            )
-            *root(
-                link_length_4*link_length_4 + 4.0*pivot_rear_x*pivot_rear_y*swap_xy
-                + 2.0*pivot_rear_x*pivot_rear_x*swap_xy*swap_xy + 2.0*pivot_rear_y*pivot_rear_y*swap_xy*swap_xy
-                - 2.0*pivot_rear_x*pivot_rear_x*swap_xy - 2.0*pivot_rear_y*pivot_rear_y*swap_xy
-                - 4.0*pivot_rear_x*pivot_rear_y*swap_xy*swap_xy
-            )
-            *link_length_2
-        )
+        /(link_length_4*link_length_2*link_length_2)
     )
     if not (type2_arms_aligned >= min_type2_margin):
         missing = min_type2_margin - type2_arms_aligned

@@ -26,7 +26,8 @@ def branch(
     arm_length_1 = k.arm_length_1
     arm_length_2 = k.arm_length_2
     assembly_sign = k.assembly_sign
-    distance = k.distance
+    fixed_length_1 = k.fixed_length_1
+    fixed_length_2 = k.fixed_length_2
     mid_a1 = k.mid_a1
     mid_a2 = k.mid_a2
     mid_a3 = k.mid_a3
@@ -38,59 +39,40 @@ def branch(
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
-    stewart_radius = k.stewart_radius
     if not (
         -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
         and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
     ):
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
-    span_1_x = arm_1_radius + x - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-    span_1_z = (
-        z
-        - root(
-            2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-            + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-            + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-            - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-        )
-    )
+    span_1_x = arm_1_radius + x - fixed_length_1
+    span_1_z = z - fixed_length_2
     effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)
     if not (effective_a1 > 1e-9*arm_length_1):
         return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
     divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
     swing_scale_a1 = 2.0*arm_length_1*divisor_a1
-    sine_square_a1 = (
-        (
-            2.0*arm_length_1*divisor_a1 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1
-            - divisor_a1*divisor_a1 - y*y
-        )
-        *(
-            arm_length_1*arm_length_1 + 2.0*arm_length_1*divisor_a1 + divisor_a1*divisor_a1 + y*y
-            - arm_length_2*arm_length_2
-        )
-        /(swing_scale_a1*swing_scale_a1)
-    )
-    if not (sine_square_a1 >= -1e-12):
+    third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)
+    below_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+    above_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+    product_a1 = above_a1*below_a1
+    if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
         missing = abs(
             arm_length_2
             - root(
                 0.5*abs(
-                    arm_length_1*arm_length_1 + divisor_a1*divisor_a1 + y*y - 2.0*arm_length_1*divisor_a1
-                    - arm_length_2*arm_length_2
+                    (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
                 )
-                + arm_length_1*arm_length_1 + divisor_a1*divisor_a1 + y*y
+                + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
+                + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
                 - 0.5*abs(
-                    arm_length_1*arm_length_1 + 2.0*arm_length_1*divisor_a1 + divisor_a1*divisor_a1 + y*y
-                    - arm_length_2*arm_length_2
+                    (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
                 )
+                - (arm_length_2 + y)*(arm_length_2 - y)
             )
         )
         return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-    span_2_x = x + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance) - 0.5*arm_1_radius
-    span_2_y = (
-        y + 0.5*root(3.0)*arm_1_radius
-        - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-    )
+    span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius
+    span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1
     along_a2 = span_2_x - root(3.0)*span_2_y
     across_a2 = 2.0*span_1_z
     effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)
@@ -98,147 +80,108 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
     divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
     swing_scale_a2 = arm_length_1*divisor_a2
-    sine_square_a2 = (
-        (
-            arm_length_1*divisor_a2 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-            - span_2_x*span_2_x - span_2_y*span_2_y
-        )
-        *(
-            arm_length_1*arm_length_1 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x
-            + span_2_y*span_2_y - arm_length_2*arm_length_2
-        )
-        /(swing_scale_a2*swing_scale_a2)
+    third_square_a2 = (
+        (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+        *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
     )
-    if not (sine_square_a2 >= -1e-12):
+    below_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
+    above_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+    product_a2 = above_a2*below_a2
+    if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
         missing = abs(
             arm_length_2
             - root(
                 0.5*abs(
-                    arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y
-                    - arm_length_1*divisor_a2 - arm_length_2*arm_length_2
+                    (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                    + (
+                        0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                    )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
                 )
-                + arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y
+                + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
+                + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                + (
+                    0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
                 - 0.5*abs(
-                    arm_length_1*arm_length_1 + arm_length_1*divisor_a2 + span_1_z*span_1_z + span_2_x*span_2_x
-                    + span_2_y*span_2_y - arm_length_2*arm_length_2
+                    (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
+                    + (
+                        0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
+                    )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
                 )
             )
         )
         return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-    span_3_y = (
-        y + 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-        - 0.5*root(3.0)*arm_1_radius
-    )
+    span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius
     along_a3 = span_2_x + root(3.0)*span_3_y
     effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)
     if not (effective_a3 > 5e-10*arm_length_1):
         return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
     divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
     swing_scale_a3 = arm_length_1*divisor_a3
-    sine_square_a3 = (
-        (
-            arm_length_1*divisor_a3 + arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - span_1_z*span_1_z
-            - span_2_x*span_2_x - span_3_y*span_3_y
-        )
-        *(
-            arm_length_1*arm_length_1 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x
-            + span_3_y*span_3_y - arm_length_2*arm_length_2
-        )
-        /(swing_scale_a3*swing_scale_a3)
+    third_square_a3 = (
+        (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
+        *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
     )
-    if not (sine_square_a3 >= -1e-12):
+    below_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
+    above_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+    product_a3 = above_a3*below_a3
+    if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
         missing = abs(
             arm_length_2
             - root(
                 0.5*abs(
-                    arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y
-                    - arm_length_1*divisor_a3 - arm_length_2*arm_length_2
+                    (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
+                    - (
+                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
                 )
-                + arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y
+                + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
+                + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
                 - 0.5*abs(
-                    arm_length_1*arm_length_1 + arm_length_1*divisor_a3 + span_1_z*span_1_z + span_2_x*span_2_x
-                    + span_3_y*span_3_y - arm_length_2*arm_length_2
+                    (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
+                    - (
+                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
                 )
+                - (
+                    arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
+                )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
             )
         )
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-    cos_swing_a1 = (
-        (arm_length_2*arm_length_2 - arm_length_1*arm_length_1 - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
-    )
-    sin_swing_a1 = (sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1
+    both_a1 = above_a1 + below_a1
+    sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+    cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+    sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
     cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
-    pivot_1_x = root(stewart_radius*stewart_radius - 0.25*distance*distance) - arm_1_radius - arm_length_1*cos_a1
+    pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1
     rod_1_x = x - pivot_1_x
     sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
-    pivot_1_z = (
-        root(
-            2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-            + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-            + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-            - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-        )
-        - arm_length_1*sin_a1
-    )
+    pivot_1_z = fixed_length_2 - arm_length_1*sin_a1
     rod_1_z = z - pivot_1_z
-    cos_swing_a2 = (
-        (
-            arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_2_y*span_2_y
-            - arm_length_2*arm_length_2
-        )
-        /swing_scale_a2
-    )
-    sin_swing_a2 = -(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2
+    both_a2 = above_a2 + below_a2
+    sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+    cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+    sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
     cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-    pivot_2_x = (
-        0.5*arm_1_radius + 0.5*arm_length_1*cos_a2
-        - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-    )
+    pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1
     rod_2_x = x - pivot_2_x
-    pivot_2_y = (
-        0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0) - 0.5*root(3.0)*arm_1_radius
-        - 0.5*root(3.0)*arm_length_1*cos_a2
-    )
+    pivot_2_y = 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*arm_length_1*cos_a2
     rod_2_y = y - pivot_2_y
     sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
-    pivot_2_z = (
-        root(
-            2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-            + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-            + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-            - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-        )
-        - arm_length_1*sin_a2
-    )
+    pivot_2_z = fixed_length_2 - arm_length_1*sin_a2
     rod_2_z = z - pivot_2_z
-    cos_swing_a3 = (
-        (
-            arm_length_1*arm_length_1 + span_1_z*span_1_z + span_2_x*span_2_x + span_3_y*span_3_y
-            - arm_length_2*arm_length_2
-        )
-        /swing_scale_a3
-    )
-    sin_swing_a3 = -(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3
+    both_a3 = above_a3 + below_a3
+    sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+    cos_swing_a3 = (above_a3 - below_a3)/sum_a3
+    sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
     cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-    pivot_3_x = (
-        0.5*arm_1_radius + 0.5*arm_length_1*cos_a3
-        - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-    )
+    pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1
     rod_3_x = x - pivot_3_x
-    pivot_3_y = (
-        0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3
-        - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-    )
+    pivot_3_y = 0.5*root(3.0)*arm_1_radius + 0.5*root(3.0)*arm_length_1*cos_a3 - 0.5*root(3.0)*fixed_length_1
     rod_3_y = y - pivot_3_y
     sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
-    pivot_3_z = (
-        root(
-            2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-            + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-            + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-            - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-        )
-        - arm_length_1*sin_a3
-    )
+    pivot_3_z = fixed_length_2 - arm_length_1*sin_a3
     rod_3_z = z - pivot_3_z
     type2_rods_coplanar = (
         assembly_sign

@@ -59,10 +59,10 @@ def unrolled(k: Constants) -> Unrolled:
     a2_squared_plus_a3_squared = a2*a2 + a3*a3
     size_q6_of_q3_times_rounding = 1e-12*size_q6_of_q3
     share_of_size_q6_of_q3 = 1.000000001*size_q6_of_q3
+    scale_q3_squared_times_rounding = 1e-12*scale_q3*scale_q3
+    offset_a5_times_2 = 2.0*offset_a5
     a2_plus_a3 = a2 + a3
     a2_minus_a3 = a2 - a3
-    scale_q3_squared = scale_q3*scale_q3
-    offset_a5_times_2 = 2.0*offset_a5
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -236,12 +236,15 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
-        # kept as a product
-        sine_square_q3_down = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
-        sin_q3 = (sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
+        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        product_q3_down = above_q3*below_q3
+        sin_q3 = 2.0*(sqrt(product_q3_down) if product_q3_down > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -384,12 +387,15 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
-        # kept as a product
-        sine_square_q3_up = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
-        sin_q3 = (sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
+        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        product_q3_up = above_q3*below_q3
+        sin_q3 = 2.0*(sqrt(product_q3_up) if product_q3_up > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -439,7 +445,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_left_down_up = nearest_period(axis_a4_left_down_up, open_a4)
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1:
             # limits of A2, limits of A3, limits of A4
-            if sine_square_q3_down >= -1e-12 and axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6:
+            if axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6 and product_q3_down >= -scale_q3_squared_times_rounding:
                 refusal_left_up_down = (
                     0.0
                     if (axis_a2_left_up_down >= lowest_a2) and (axis_a3_left_up_down >= lowest_a3) and (axis_a4_left_up_down >= lowest_a4) and (
@@ -458,7 +464,7 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_left_up_down = 3.0
                 refusal_left_down_down = 3.0
             # limits of A2, limits of A3, limits of A4
-            if sine_square_q3_up >= -1e-12 and axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6:
+            if axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6 and product_q3_up >= -scale_q3_squared_times_rounding:
                 refusal_left_up_up = (
                     0.0
                     if (axis_a2_left_up_up >= lowest_a2) and (axis_a3_left_up_up >= lowest_a3) and (axis_a4_left_up_up >= lowest_a4) and (
@@ -606,12 +612,15 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
-        # kept as a product
-        sine_square_q3_down = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
-        sin_q3 = (sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
+        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        product_q3_down = above_q3*below_q3
+        sin_q3 = 2.0*(sqrt(product_q3_down) if product_q3_down > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -748,12 +757,15 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
-        # kept as a product
-        sine_square_q3_up = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
-        sin_q3 = (sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
+        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        product_q3_up = above_q3*below_q3
+        sin_q3 = 2.0*(sqrt(product_q3_up) if product_q3_up > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -803,7 +815,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_right_down_up = nearest_period(axis_a4_right_down_up, open_a4)
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
             # limits of A2, limits of A3, limits of A4
-            if sine_square_q3_down >= -1e-12 and axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6:
+            if axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6 and product_q3_down >= -scale_q3_squared_times_rounding:
                 refusal_right_up_down = (
                     0.0
                     if (axis_a2_right_up_down >= lowest_a2) and (axis_a3_right_up_down >= lowest_a3) and (axis_a4_right_up_down >= lowest_a4) and (
@@ -822,7 +834,7 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_right_up_down = 3.0
                 refusal_right_down_down = 3.0
             # limits of A2, limits of A3, limits of A4
-            if sine_square_q3_up >= -1e-12 and axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6:
+            if axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6 and product_q3_up >= -scale_q3_squared_times_rounding:
                 refusal_right_up_up = (
                     0.0
                     if (axis_a2_right_up_up >= lowest_a2) and (axis_a3_right_up_up >= lowest_a3) and (axis_a4_right_up_up >= lowest_a4) and (
@@ -1075,14 +1087,17 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
-        refusal_left_down = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
+        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        refusal_left_down = 0.0 if product_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left)*RADIAN
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1205,13 +1220,16 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
-        refusal_left_up = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
+        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        refusal_left_up = 0.0 if product_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1357,14 +1375,17 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
-        refusal_right_down = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
+        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        refusal_right_down = 0.0 if product_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right)*RADIAN
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1487,13 +1508,16 @@ def unrolled(k: Constants) -> Unrolled:
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
-        refusal_right_up = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
-        sin_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
+        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        refusal_right_up = 0.0 if product_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1719,18 +1743,16 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_a3)*(a2_minus_a3 + reach)*(a2_plus_a3 + reach)*(a2_plus_a3 - reach)/scale_q3_squared
-        )
-        if sine_square_q3 > 0.0:
-            sin_q3 = sqrt(sine_square_q3)*sigma_elbow
-        else:
-            # q3: out of reach
-            if not (sine_square_q3 >= -1e-12):
-                return None
-            sin_q3 = 0.0
-        cos_q3 = (reach*reach - a2_squared_plus_a3_squared)/scale_q3
+        below_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)  # zero where it is stretched or folded
+        above_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        # q3: out of reach
+        if not (product_q3 >= -scale_q3_squared_times_rounding):
+            return None
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (above_q3 - below_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_q2 = arctan2(wrist_y_from_q1, wrist_x_from_q1) - arctan2(a3*sin_q3, a2 + a3*cos_q3)
         else:

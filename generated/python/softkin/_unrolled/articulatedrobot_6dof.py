@@ -57,13 +57,12 @@ def unrolled(k: Constants) -> Unrolled:
     single_a6 = k.single_a6
     swing_scale_q3 = k.swing_scale_q3
     machine_scale_times_free_angle = 1e-11*machine_scale
-    a2_plus_effective_q3 = a2 + effective_q3
-    a2_minus_effective_q3 = a2 - effective_q3
-    swing_scale_q3_squared = swing_scale_q3*swing_scale_q3
-    a2_squared_plus_effective_q3_squared = a2*a2 + effective_q3*effective_q3
     angle_of_a3_by_effective_q3 = arctan2(d4/effective_q3 + 0.0, a3/effective_q3 + 0.0)
     offset_a6_plus_180 = 180.0 + offset_a6
+    swing_scale_q3_squared_times_rounding = 1e-12*swing_scale_q3*swing_scale_q3
     offset_a5_times_2 = 2.0*offset_a5
+    a2_plus_effective_q3 = a2 + effective_q3
+    a2_minus_effective_q3 = a2 - effective_q3
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4, offset_a5, offset_a6,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -115,15 +114,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
-            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
-        )
-        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        # zero where it is stretched or folded
+        below_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
+        above_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3*minus_sin_swing_q3 + 0.0, a2 + effective_q3*cos_swing_q3 + 0.0)
+            angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3 + 0.0, a2 + effective_q3*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -131,8 +133,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3 - minus_angle_of_swing_q3
+        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
@@ -208,7 +210,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_front_down_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_front_down_up - open_a6 < 179.999999999:
             axis_a6_front_down_up = nearest_period(axis_a6_front_down_up, open_a6)
-        angle_q3 = angle_of_a3_by_effective_q3 + minus_angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
@@ -270,7 +272,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_front_up_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_front_up_up - open_a6 < 179.999999999:
             axis_a6_front_up_up = nearest_period(axis_a6_front_up_up, open_a6)
-        if sine_square_q3 >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
+        if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and product_q3 >= -swing_scale_q3_squared_times_rounding:
             # limits of A4, limits of A5, limits of A6
             if axis_a2_front_down >= lowest_a2 and axis_a3_front_down >= lowest_a3 and axis_a2_front_down <= highest_a2 and axis_a3_front_down <= highest_a3:
                 refusal_front_down_down = (
@@ -317,15 +319,18 @@ def unrolled(k: Constants) -> Unrolled:
         r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
         wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
-            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
-        )
-        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        # zero where it is stretched or folded
+        below_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
+        above_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3*minus_sin_swing_q3 + 0.0, a2 + effective_q3*cos_swing_q3 + 0.0)
+            angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3 + 0.0, a2 + effective_q3*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -333,8 +338,8 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_down = free_a2
             angle_q2_up = free_a2
-        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3 - minus_angle_of_swing_q3
+        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
@@ -404,7 +409,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_back_down_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_back_down_up - open_a6 < 179.999999999:
             axis_a6_back_down_up = nearest_period(axis_a6_back_down_up, open_a6)
-        angle_q3 = angle_of_a3_by_effective_q3 + minus_angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
@@ -466,7 +471,7 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_back_up_up = direction_of_axis_a6  # A6: its turn
         if not -180.000000001 <= axis_a6_back_up_up - open_a6 < 179.999999999:
             axis_a6_back_up_up = nearest_period(axis_a6_back_up_up, open_a6)
-        if sine_square_q3 >= -1e-12 and axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1:
+        if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and product_q3 >= -swing_scale_q3_squared_times_rounding:
             # limits of A4, limits of A5, limits of A6
             if axis_a2_back_down >= lowest_a2 and axis_a3_back_down >= lowest_a3 and axis_a2_back_down <= highest_a2 and axis_a3_back_down <= highest_a3:
                 refusal_back_down_down = (
@@ -617,17 +622,20 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
-            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
-        )
-        refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        # zero where it is stretched or folded
+        below_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
+        above_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        refusal_front = 0.0 if product_q3 >= -swing_scale_q3_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN
-        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3*minus_sin_swing_q3, a2 + effective_q3*cos_swing_q3)
+            angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3, a2 + effective_q3*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -636,8 +644,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = free_a2
             angle_q2_up = free_a2
         axis_a2_front_down = offset_a2 + angle_q2_down*RADIAN
-        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 - minus_angle_of_swing_q3
+        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
         axis_a3_front_down = offset_a3 + angle_q3*RADIAN
         r13_from_q1 = r13*cos_q1_front + r23*sin_q1_front
         angle_q23 = angle_q2_down + angle_q3
@@ -695,7 +703,7 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
         axis_a2_front_up = offset_a2 + angle_q2_up*RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3 + minus_angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3*RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
@@ -750,17 +758,20 @@ def unrolled(k: Constants) -> Unrolled:
             )
         wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
-            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
-        )
-        refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        # zero where it is stretched or folded
+        below_q3 = (a2_minus_reach + effective_q3)*(a2_plus_reach + effective_q3)
+        above_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        refusal_back = 0.0 if product_q3 >= -swing_scale_q3_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN
-        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3*minus_sin_swing_q3, a2 + effective_q3*cos_swing_q3)
+            angle_of_arm_across_q2 = arctan2(effective_q3*sin_swing_q3, a2 + effective_q3*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -769,8 +780,8 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_down = free_a2
             angle_q2_up = free_a2
         axis_a2_back_down = offset_a2 + angle_q2_down*RADIAN
-        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3, cos_swing_q3)
-        angle_q3 = angle_of_a3_by_effective_q3 - minus_angle_of_swing_q3
+        angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
         axis_a3_back_down = offset_a3 + angle_q3*RADIAN
         r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
         angle_q23 = angle_q2_down + angle_q3
@@ -828,7 +839,7 @@ def unrolled(k: Constants) -> Unrolled:
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
         axis_a2_back_up = offset_a2 + angle_q2_up*RADIAN
-        angle_q3 = angle_of_a3_by_effective_q3 + minus_angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3 - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3*RADIAN
         angle_q23 = angle_q2_up + angle_q3
         sin_q23 = sin(angle_q23)
@@ -979,27 +990,25 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = point_from_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)*(a2_plus_effective_q3 + reach)
-            *(a2_plus_effective_q3 - reach)/swing_scale_q3_squared
-        )
-        if sine_square_q3 > 0.0:
-            minus_sin_swing_q3 = sqrt(sine_square_q3)*sigma_elbow
-        else:
-            # q3: out of reach
-            if not (sine_square_q3 >= -1e-12):
-                return None
-            minus_sin_swing_q3 = 0.0
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_squared)/swing_scale_q3
+        # zero where it is stretched or folded
+        below_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)
+        above_q3 = (reach - a2_minus_effective_q3)*(a2_minus_effective_q3 + reach)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        # q3: out of reach
+        if not (product_q3 >= -swing_scale_q3_squared_times_rounding):
+            return None
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = -2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
             angle_q2 = (
-                arctan2(effective_q3*minus_sin_swing_q3, a2 + effective_q3*cos_swing_q3)
+                arctan2(-effective_q3*sin_swing_q3, a2 + effective_q3*cos_swing_q3)
                 - arctan2(wrist_x_from_q1, wrist_y_from_q1)
             )
         else:
             angle_q2 = (ref_a2 - offset_a2)*DEGREE
-        angle_q3 = angle_of_a3_by_effective_q3 - arctan2(minus_sin_swing_q3, cos_swing_q3)
+        angle_q3 = angle_of_a3_by_effective_q3 + arctan2(sin_swing_q3, cos_swing_q3)
         r13_from_q1 = r13*cos_q1 + r23*sin_q1
         angle_q23 = angle_q2 + angle_q3
         sin_q23 = sin(angle_q23)

@@ -53,21 +53,15 @@ def unrolled(k: Constants) -> Unrolled:
     constant_part = base_radius_1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
     constant_part_2 = base_radius_1*sin_azimuth_1 - tcp_radius_1*sin_azimuth_1
     inner_arm_1_times_shortest_link = 1e-9*inner_arm_1
-    inner_arm_1_squared = inner_arm_1*inner_arm_1
     inner_arm_1_times_2 = 2.0*inner_arm_1
-    outer_arm_1_squared = outer_arm_1*outer_arm_1
     constant_part_3 = base_radius_2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
     constant_part_4 = base_radius_2*sin_azimuth_2 - tcp_radius_2*sin_azimuth_2
     inner_arm_2_times_shortest_link = 1e-9*inner_arm_2
-    inner_arm_2_squared = inner_arm_2*inner_arm_2
     inner_arm_2_times_2 = 2.0*inner_arm_2
-    outer_arm_2_squared = outer_arm_2*outer_arm_2
     constant_part_5 = base_radius_3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
     constant_part_6 = base_radius_3*sin_azimuth_3 - tcp_radius_3*sin_azimuth_3
     inner_arm_3_times_shortest_link = 1e-9*inner_arm_3
-    inner_arm_3_squared = inner_arm_3*inner_arm_3
     inner_arm_3_times_2 = 2.0*inner_arm_3
-    outer_arm_3_squared = outer_arm_3*outer_arm_3
     cos_azimuth_1_times_inner_arm_1 = inner_arm_1*cos_azimuth_1
     inner_arm_1_times_sin_azimuth_1 = inner_arm_1*sin_azimuth_1
     cos_azimuth_2_times_inner_arm_2 = inner_arm_2*cos_azimuth_2
@@ -75,9 +69,6 @@ def unrolled(k: Constants) -> Unrolled:
     cos_azimuth_3_times_inner_arm_3 = inner_arm_3*cos_azimuth_3
     inner_arm_3_times_sin_azimuth_3 = inner_arm_3*sin_azimuth_3
     constant_part_7 = assembly_sign/(outer_arm_1*outer_arm_2*outer_arm_3)
-    inner_arm_1_squared_minus_outer_arm_1_squared = inner_arm_1*inner_arm_1 - outer_arm_1*outer_arm_1
-    inner_arm_2_squared_minus_outer_arm_2_squared = inner_arm_2*inner_arm_2 - outer_arm_2*outer_arm_2
-    inner_arm_3_squared_minus_outer_arm_3_squared = inner_arm_3*inner_arm_3 - outer_arm_3*outer_arm_3
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -97,22 +88,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return 8*(3.0,)
-        part_of_sine_square_a1_plus_z_squared = inner_arm_1_squared + span_1_x*span_1_x + span_1_y*span_1_y + z*z
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (outer_arm_1_squared + divisor_a1*inner_arm_1_times_2 - part_of_sine_square_a1_plus_z_squared)
-            *(part_of_sine_square_a1_plus_z_squared + divisor_a1*inner_arm_1_times_2 - outer_arm_1_squared)
-            /(swing_scale_a1*swing_scale_a1)
+        # square of the third side
+        third_square_a1 = (
+            (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
+            *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
         )
-        if sine_square_a1 > 0.0:
-            sin_swing_a1 = sqrt(sine_square_a1)
-        else:
-            # a1: out of reach
-            if not (sine_square_a1 >= -1e-12):
-                return 8*(3.0,)
-            sin_swing_a1 = 0.0
+        # zero where it is stretched or folded
+        below_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        # zero where it is the other
+        above_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        product_a1 = above_a1*below_a1
+        # a1: out of reach
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            return 8*(3.0,)
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = y - constant_part_4  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
@@ -120,22 +110,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return 8*(3.0,)
-        part_of_sine_square_a2_plus_z_squared = inner_arm_2_squared + span_2_x*span_2_x + span_2_y*span_2_y + z*z
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (outer_arm_2_squared + divisor_a2*inner_arm_2_times_2 - part_of_sine_square_a2_plus_z_squared)
-            *(part_of_sine_square_a2_plus_z_squared + divisor_a2*inner_arm_2_times_2 - outer_arm_2_squared)
-            /(swing_scale_a2*swing_scale_a2)
+        # square of the third side
+        third_square_a2 = (
+            (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
+            *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
         )
-        if sine_square_a2 > 0.0:
-            sin_swing_a2 = sqrt(sine_square_a2)
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return 8*(3.0,)
-            sin_swing_a2 = 0.0
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        # zero where it is the other
+        above_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+            return 8*(3.0,)
         span_3_x = x - constant_part_5  # rod 3
         span_3_y = y - constant_part_6  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
@@ -143,31 +132,36 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return 8*(3.0,)
-        part_of_sine_square_a3_plus_z_squared = inner_arm_3_squared + span_3_x*span_3_x + span_3_y*span_3_y + z*z
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (outer_arm_3_squared + divisor_a3*inner_arm_3_times_2 - part_of_sine_square_a3_plus_z_squared)
-            *(part_of_sine_square_a3_plus_z_squared + divisor_a3*inner_arm_3_times_2 - outer_arm_3_squared)
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
+            *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
         )
-        if sine_square_a3 > 0.0:
-            sin_swing_a3 = sqrt(sine_square_a3)
-        else:
-            # a3: out of reach
-            if not (sine_square_a3 >= -1e-12):
-                return 8*(3.0,)
-            sin_swing_a3 = 0.0
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        # zero where it is the other
+        above_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        product_a3 = above_a3*below_a3
+        # a3: out of reach
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+            return 8*(3.0,)
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (part_of_sine_square_a1_plus_z_squared - outer_arm_1_squared)/swing_scale_a1
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
         along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
         cos_swing_a1_times_z_by_divisor_a1 = z*cos_swing_a1/divisor_a1
         along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1*sin_swing_a1/divisor_a1
         sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
         sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (part_of_sine_square_a2_plus_z_squared - outer_arm_2_squared)/swing_scale_a2
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
@@ -179,8 +173,11 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
         rod_2_z_outward = minus_pivot_2_z + z
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        sin_swing_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)/sum_a3
         sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
-        cos_swing_a3 = (part_of_sine_square_a3_plus_z_squared - outer_arm_3_squared)/swing_scale_a3
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
@@ -428,22 +425,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a1: its effective length is too short
         if not (effective_a1 > inner_arm_1_times_shortest_link):
             return 8*(None,)
-        part_of_sine_square_a1_plus_z_squared = inner_arm_1_squared + span_1_x*span_1_x + span_1_y*span_1_y + z*z
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (outer_arm_1_squared + divisor_a1*inner_arm_1_times_2 - part_of_sine_square_a1_plus_z_squared)
-            *(part_of_sine_square_a1_plus_z_squared + divisor_a1*inner_arm_1_times_2 - outer_arm_1_squared)
-            /(swing_scale_a1*swing_scale_a1)
+        # square of the third side
+        third_square_a1 = (
+            (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
+            *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
         )
-        if sine_square_a1 > 0.0:
-            sin_swing_a1 = sqrt(sine_square_a1)
-        else:
-            # a1: out of reach
-            if not (sine_square_a1 >= -1e-12):
-                return 8*(None,)
-            sin_swing_a1 = 0.0
+        # zero where it is stretched or folded
+        below_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        # zero where it is the other
+        above_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        product_a1 = above_a1*below_a1
+        # a1: out of reach
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            return 8*(None,)
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = y - constant_part_4  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
@@ -451,22 +447,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a2: its effective length is too short
         if not (effective_a2 > inner_arm_2_times_shortest_link):
             return 8*(None,)
-        part_of_sine_square_a2_plus_z_squared = inner_arm_2_squared + span_2_x*span_2_x + span_2_y*span_2_y + z*z
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (outer_arm_2_squared + divisor_a2*inner_arm_2_times_2 - part_of_sine_square_a2_plus_z_squared)
-            *(part_of_sine_square_a2_plus_z_squared + divisor_a2*inner_arm_2_times_2 - outer_arm_2_squared)
-            /(swing_scale_a2*swing_scale_a2)
+        # square of the third side
+        third_square_a2 = (
+            (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
+            *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
         )
-        if sine_square_a2 > 0.0:
-            sin_swing_a2 = sqrt(sine_square_a2)
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return 8*(None,)
-            sin_swing_a2 = 0.0
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        # zero where it is the other
+        above_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+            return 8*(None,)
         span_3_x = x - constant_part_5  # rod 3
         span_3_y = y - constant_part_6  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
@@ -474,24 +469,26 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: its effective length is too short
         if not (effective_a3 > inner_arm_3_times_shortest_link):
             return 8*(None,)
-        part_of_sine_square_a3_plus_z_squared = inner_arm_3_squared + span_3_x*span_3_x + span_3_y*span_3_y + z*z
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (outer_arm_3_squared + divisor_a3*inner_arm_3_times_2 - part_of_sine_square_a3_plus_z_squared)
-            *(part_of_sine_square_a3_plus_z_squared + divisor_a3*inner_arm_3_times_2 - outer_arm_3_squared)
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
+            *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
         )
-        if sine_square_a3 > 0.0:
-            sin_swing_a3 = sqrt(sine_square_a3)
-        else:
-            # a3: out of reach
-            if not (sine_square_a3 >= -1e-12):
-                return 8*(None,)
-            sin_swing_a3 = 0.0
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        # zero where it is the other
+        above_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        product_a3 = above_a3*below_a3
+        # a3: out of reach
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+            return 8*(None,)
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (part_of_sine_square_a1_plus_z_squared - outer_arm_1_squared)/swing_scale_a1
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
         along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
         pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
@@ -503,8 +500,11 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
         minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
         rod_1_z = minus_pivot_1_z + z
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
         sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (part_of_sine_square_a2_plus_z_squared - outer_arm_2_squared)/swing_scale_a2
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
@@ -516,8 +516,11 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
         rod_2_z_outward = minus_pivot_2_z + z
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        sin_swing_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)/sum_a3
         sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
-        cos_swing_a3 = (part_of_sine_square_a3_plus_z_squared - outer_arm_3_squared)/swing_scale_a3
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
@@ -663,25 +666,19 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a1 = effective_a1 if effective_a1 > inner_arm_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*inner_arm_1_times_2  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (
-                inner_arm_1_squared_minus_outer_arm_1_squared + divisor_a1*inner_arm_1_times_2 + span_1_x*span_1_x
-                + span_1_y*span_1_y + z*z
-            )
-            *(
-                divisor_a1*inner_arm_1_times_2 - inner_arm_1_squared_minus_outer_arm_1_squared - span_1_x*span_1_x
-                - span_1_y*span_1_y - z*z
-            )
-            /(swing_scale_a1*swing_scale_a1)
+        # square of the third side
+        third_square_a1 = (
+            (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
+            *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
         )
-        if sine_square_a1 > 0.0:
-            sin_swing_a1 = -sqrt(sine_square_a1)*sigma_knee_1
-        else:
-            # a1: out of reach
-            if not (sine_square_a1 >= -1e-12):
-                return None
-            sin_swing_a1 = 0.0
+        # zero where it is stretched or folded
+        below_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        # zero where it is the other
+        above_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        product_a1 = above_a1*below_a1
+        # a1: out of reach
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            return None
         span_2_x = x - constant_part_3  # rod 2
         span_2_y = y - constant_part_4  # rod 2
         along_a2 = span_2_x*cos_azimuth_2 + span_2_y*sin_azimuth_2
@@ -691,25 +688,19 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a2 = effective_a2 if effective_a2 > inner_arm_2_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*inner_arm_2_times_2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                inner_arm_2_squared_minus_outer_arm_2_squared + divisor_a2*inner_arm_2_times_2 + span_2_x*span_2_x
-                + span_2_y*span_2_y + z*z
-            )
-            *(
-                divisor_a2*inner_arm_2_times_2 - inner_arm_2_squared_minus_outer_arm_2_squared - span_2_x*span_2_x
-                - span_2_y*span_2_y - z*z
-            )
-            /(swing_scale_a2*swing_scale_a2)
+        # square of the third side
+        third_square_a2 = (
+            (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
+            *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
         )
-        if sine_square_a2 > 0.0:
-            sin_swing_a2 = -sqrt(sine_square_a2)*sigma_knee_2
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return None
-            sin_swing_a2 = 0.0
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        # zero where it is the other
+        above_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+            return None
         span_3_x = x - constant_part_5  # rod 3
         span_3_y = y - constant_part_6  # rod 3
         along_a3 = span_3_x*cos_azimuth_3 + span_3_y*sin_azimuth_3
@@ -719,29 +710,23 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a3 = effective_a3 if effective_a3 > inner_arm_3_times_shortest_link else 1.0
         swing_scale_a3 = divisor_a3*inner_arm_3_times_2  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (
-                inner_arm_3_squared_minus_outer_arm_3_squared + divisor_a3*inner_arm_3_times_2 + span_3_x*span_3_x
-                + span_3_y*span_3_y + z*z
-            )
-            *(
-                divisor_a3*inner_arm_3_times_2 - inner_arm_3_squared_minus_outer_arm_3_squared - span_3_x*span_3_x
-                - span_3_y*span_3_y - z*z
-            )
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
+            *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
         )
-        if sine_square_a3 > 0.0:
-            sin_swing_a3 = -sqrt(sine_square_a3)*sigma_knee_3
-        else:
-            # a3: out of reach
-            if not (sine_square_a3 >= -1e-12):
-                return None
-            sin_swing_a3 = 0.0
-        cos_swing_a1 = (
-            (inner_arm_1_squared_minus_outer_arm_1_squared + span_1_x*span_1_x + span_1_y*span_1_y + z*z)
-            /swing_scale_a1
-        )
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        # zero where it is the other
+        above_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        product_a3 = above_a3*below_a3
+        # a3: out of reach
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+            return None
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
         pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x = x - pivot_1_x
@@ -750,10 +735,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
         minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
         rod_1_z = minus_pivot_1_z + z
-        cos_swing_a2 = (
-            (inner_arm_2_squared_minus_outer_arm_2_squared + span_2_x*span_2_x + span_2_y*span_2_y + z*z)
-            /swing_scale_a2
-        )
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x = x - pivot_2_x
@@ -762,10 +747,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
         rod_2_z = minus_pivot_2_z + z
-        cos_swing_a3 = (
-            (inner_arm_3_squared_minus_outer_arm_3_squared + span_3_x*span_3_x + span_3_y*span_3_y + z*z)
-            /swing_scale_a3
-        )
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
+        sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x = x - pivot_3_x

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._core import Unrolled
-from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, root, sqrt
+from softkin._scalar import DEGREE, RADIAN, arctan2, nearest_period, sqrt
 
 if TYPE_CHECKING:
     from softkin._types import PlainFrame, Reals, Rotation, Vector
@@ -37,51 +37,19 @@ def unrolled(k: Constants) -> Unrolled:
     machine_scale_times_plane = 1e-6*machine_scale
     link_length_1_times_shortest_link = 1e-9*link_length_1
     link_length_1_times_2 = 2.0*link_length_1
-    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-    link_length_1_squared_minus_link_length_2_squared = link_length_1*link_length_1 - link_length_2*link_length_2
     link_length_1_times_link_length_3_by_link_length_2 = link_length_1*link_length_3/link_length_2
     link_length_3_times_swap_xy_by_link_length_2 = link_length_3*swap_xy/link_length_2
     link_length_3_by_link_length_2 = link_length_3/link_length_2
     link_length_1_times_link_length_2 = link_length_1*link_length_2
     link_length_1_times_link_length_3 = link_length_1*link_length_3
     link_length_5_times_shortest_link = 1e-9*link_length_5
-    link_length_4_squared = link_length_4*link_length_4
-    link_length_1_squared = link_length_1*link_length_1
-    link_length_5_squared = link_length_5*link_length_5
-    constant_part = link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
-    constant_part_2 = 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-    link_length_5_times_2 = 2.0*link_length_5
-    constant_part_3 = 2.0*link_length_1*link_length_3/link_length_2
-    link_length_2_squared = link_length_2*link_length_2
-    link_length_1_squared_times_link_length_2_squared = link_length_1*link_length_1*link_length_2*link_length_2
-    link_length_1_squared_times_link_length_3_squared = link_length_1*link_length_1*link_length_3*link_length_3
-    link_length_2_squared_times_link_length_5_squared = link_length_2*link_length_2*link_length_5*link_length_5
-    link_length_2_squared_times_link_length_4_squared = link_length_2*link_length_2*link_length_4*link_length_4
-    constant_part_4 = 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-    link_length_2_squared_times_link_length_5_times_2 = 2.0*link_length_2*link_length_2*link_length_5
-    link_length_1_times_link_length_2_squared_times_2 = 2.0*link_length_1*link_length_2*link_length_2
-    constant_part_5 = 2.0*link_length_1*link_length_2*link_length_3
-    constant_part_6 = link_length_2*link_length_2*link_length_2*link_length_2
     link_length_2_times_swap_xy = link_length_2*swap_xy
-    swap_xy_times_2 = 2.0*swap_xy
-    swap_xy_squared_times_2 = 2.0*swap_xy*swap_xy
-    swap_xy_squared_times_4 = 4.0*swap_xy*swap_xy
-    swap_xy_times_4 = 4.0*swap_xy
-    assembly_sign_times_link_length_3_by_link_length_2 = assembly_sign*link_length_3/link_length_2
-    constant_part_7 = (
-        link_length_1*link_length_1*link_length_2*link_length_2
-        + 2.0*link_length_1*link_length_1*link_length_2*link_length_3
-        + link_length_1*link_length_1*link_length_3*link_length_3
-        + link_length_2*link_length_2*link_length_5*link_length_5
-        - link_length_2*link_length_2*link_length_4*link_length_4
-    )
-    constant_part_8 = (
-        link_length_1*link_length_1 + link_length_5*link_length_5
-        + 2.0*link_length_1*link_length_1*link_length_3/link_length_2
-        + link_length_1*link_length_1*link_length_3*link_length_3/(link_length_2*link_length_2)
-        - link_length_4*link_length_4
-    )
+    constant_part = assembly_sign*link_length_3/(link_length_4*link_length_2*link_length_2)
+    link_length_5_times_2 = 2.0*link_length_5
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
+    link_length_4_plus_link_length_5 = link_length_4 + link_length_5
+    link_length_4_minus_link_length_5 = link_length_4 - link_length_5
     no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -107,26 +75,26 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(3.0,)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
-        # kept as a product
-        sine_square_a1 = (
-            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 + link_length_1_minus_link_length_2)
-            *(divisor_a1 + link_length_1_plus_link_length_2)*(divisor_a1 - link_length_1_minus_link_length_2)
-            /(swing_scale_a1*swing_scale_a1)
-        )
-        if sine_square_a1 > 0.0:
-            minus_sin_swing_a1 = sqrt(sine_square_a1)
-        else:
-            # a1: out of reach
-            if not (sine_square_a1 >= -1e-12):
-                return 4*(3.0,)
-            minus_sin_swing_a1 = 0.0
-        minus_sin_swing_a1_times_span_upper_y_by_divisor_a1 = minus_sin_swing_a1*span_upper_y/divisor_a1
-        cos_swing_a1 = (-link_length_1_squared_minus_link_length_2_squared - divisor_a1*divisor_a1)/swing_scale_a1
+        divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
+        divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
+        # zero where it is stretched or folded
+        below_a1 = (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
+        # zero where it is the other
+        above_a1 = (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
+        product_a1 = above_a1*below_a1
+        # a1: out of reach
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            return 4*(3.0,)
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)/sum_a1
+        sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - minus_sin_swing_a1_times_span_upper_y_by_divisor_a1
-        minus_sin_swing_a1_times_span_upper_x_by_divisor_a1 = minus_sin_swing_a1*span_upper_x/divisor_a1
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
+        sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + minus_sin_swing_a1_times_span_upper_x_by_divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
         part_of_span_rear_x = (
             link_length_3_times_swap_xy_by_link_length_2*x - link_length_3_times_swap_xy_by_link_length_2*y
         )
@@ -150,108 +118,64 @@ def unrolled(k: Constants) -> Unrolled:
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
-        part_of_cos_swing_a2_left_left_2 = (
-            link_length_5_squared + (link_length_1_squared - (link_length_4_squared - span_rear_x*span_rear_x))
-            + span_rear_y*span_rear_y
-        )
-        part_of_cos_swing_a2_left_left_4 = constant_part_2 + (constant_part + part_of_cos_swing_a2_left_left_2)
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        cos_swing_a2 = (
-            (
-                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
-                + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
-                - part_of_cos_swing_a2_left_left_4
-            )
-            /swing_scale_a2
-        )
+        divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
+        divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
+        # zero where it is stretched or folded
+        below_a2 = (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+        # zero where it is the other
+        above_a2 = (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        part_of_sine_square_a2_left_left_3 = (
-            link_length_2_squared_times_link_length_5_squared
-            + (
-                link_length_1_squared_times_link_length_3_squared
-                + (link_length_1_squared_times_link_length_2_squared + link_length_2_squared*span_rear_x*span_rear_x)
-            )
+        product_a2 = above_a2*below_a2
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
+        across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
+        cos_a2_left = (
+            across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
         )
-        part_of_sine_square_a2_left_left_6 = (
-            constant_part_4
-            - (
-                link_length_2_squared_times_link_length_4_squared
-                - (part_of_sine_square_a2_left_left_3 + link_length_2_squared*span_rear_y*span_rear_y)
-            )
-        )
-        # kept as a product
-        sine_square_a2 = (
-            (
-                part_of_sine_square_a2_left_left_6 + divisor_a2*link_length_2_squared_times_link_length_5_times_2
-                - constant_part_5*span_rear_y*cos_a1 - constant_part_5*span_rear_x*sin_a1
-                - link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
-                - link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
-            )
-            *(
-                divisor_a2*link_length_2_squared_times_link_length_5_times_2 + constant_part_5*span_rear_y*cos_a1
-                + constant_part_5*span_rear_x*sin_a1
-                + link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
-                + link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
-                - part_of_sine_square_a2_left_left_6
-            )
-            /(constant_part_6*swing_scale_a2*swing_scale_a2)
-        )
-        minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        across_a2_times_minus_sin_swing_a2_by_divisor_a2 = across_a2*minus_sin_swing_a2/divisor_a2
-        cos_a2_left = across_a2_times_minus_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        along_a2_times_minus_sin_swing_a2_by_divisor_a2 = along_a2*minus_sin_swing_a2/divisor_a2
+        along_a2_times_sin_swing_a2_by_divisor_a2_left_right = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_minus_sin_swing_a2_by_divisor_a2
+        sin_a2_left = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
+        )
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         axis_a2_left_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_left - open_a2 < 179.999999999:
             axis_a2_left_left = nearest_period(axis_a2_left_left, open_a2)
+        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
-        cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_minus_sin_swing_a2_by_divisor_a2
-        sin_a2_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_minus_sin_swing_a2_by_divisor_a2
+        cos_a2_right = (
+            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
+        )
+        sin_a2_right = (
+            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
+        )
         axis_a2_left_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_left_right - open_a2 < 179.999999999:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
-        if sine_square_a2 >= -1e-12 and axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link:
+        if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
+            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
+            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
+            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_pivot_rear_x = link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
             pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left  # rod rear
             part_of_pivot_rear_y = link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
             pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left  # rod rear
-            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
-            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
-            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_centre_2_x = (
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
             type2_arms_aligned_left = (
-                assembly_sign_times_link_length_3_by_link_length_2
+                constant_part
                 *(
                     (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3)*rod_1_y
-                )
-                /(
-                    root(
-                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
-                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
-                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
-                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
-                    )
-                    *root(
-                        link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
-                        + pivot_rear_x_left*pivot_rear_y_left*swap_xy_times_4
-                        + pivot_rear_y_left*pivot_rear_y_left*swap_xy_squared_times_2
-                        - pivot_rear_x_left*pivot_rear_x_left*swap_xy_times_2
-                        - pivot_rear_x_left*pivot_rear_y_left*swap_xy_squared_times_4
-                        - pivot_rear_y_left*pivot_rear_y_left*swap_xy_times_2
-                    )
                 )
             )
             refusal_left_left = (
@@ -267,28 +191,10 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
             type2_arms_aligned_right = (
-                assembly_sign_times_link_length_3_by_link_length_2
+                constant_part
                 *(
                     (y - (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
-                )
-                /(
-                    root(
-                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
-                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
-                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
-                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
-                    )
-                    *root(
-                        link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
-                        + pivot_rear_x_right*pivot_rear_y_right*swap_xy_times_4
-                        + pivot_rear_y_right*pivot_rear_y_right*swap_xy_squared_times_2
-                        - pivot_rear_x_right*pivot_rear_x_right*swap_xy_times_2
-                        - pivot_rear_x_right*pivot_rear_y_right*swap_xy_squared_times_4
-                        - pivot_rear_y_right*pivot_rear_y_right*swap_xy_times_2
-                    )
                 )
             )
             refusal_left_right = (
@@ -301,8 +207,8 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_left_left = 3.0
             refusal_left_right = 3.0
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + minus_sin_swing_a1_times_span_upper_y_by_divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - minus_sin_swing_a1_times_span_upper_x_by_divisor_a1
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
         along_a2 = (
             (
                 link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
@@ -319,62 +225,42 @@ def unrolled(k: Constants) -> Unrolled:
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        cos_swing_a2 = (
-            (
-                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
-                + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
-                - part_of_cos_swing_a2_left_left_4
-            )
-            /swing_scale_a2
-        )
+        divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
+        divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
+        # zero where it is stretched or folded
+        below_a2 = (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+        # zero where it is the other
+        above_a2 = (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        # kept as a product
-        sine_square_a2 = (
-            (
-                part_of_sine_square_a2_left_left_6 + divisor_a2*link_length_2_squared_times_link_length_5_times_2
-                - constant_part_5*span_rear_y*cos_a1 - constant_part_5*span_rear_x*sin_a1
-                - link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
-                - link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
-            )
-            *(
-                divisor_a2*link_length_2_squared_times_link_length_5_times_2 + constant_part_5*span_rear_y*cos_a1
-                + constant_part_5*span_rear_x*sin_a1
-                + link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
-                + link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
-                - part_of_sine_square_a2_left_left_6
-            )
-            /(constant_part_6*swing_scale_a2*swing_scale_a2)
-        )
-        minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right = across_a2*minus_sin_swing_a2/divisor_a2
-        cos_a2_left = (
-            across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
-        )
-        along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right = along_a2*minus_sin_swing_a2/divisor_a2
+        product_a2 = above_a2*below_a2
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
+        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
+        cos_a2_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
+        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_left = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
-        )
+        sin_a2_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
         axis_a2_right_left = offset_a2 + arctan2(sin_a2_left, cos_a2_left + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_left - open_a2 < 179.999999999:
             axis_a2_right_left = nearest_period(axis_a2_right_left, open_a2)
+        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         axis_a1_right = offset_a1 + arctan2(sin_a1, cos_a1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
-        cos_a2_right = (
-            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
-        )
-        sin_a2_right = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
-        )
+        cos_a2_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
+        sin_a2_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
         axis_a2_right_right = offset_a2 + arctan2(sin_a2_right, cos_a2_right + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_right_right - open_a2 < 179.999999999:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
-        if sine_square_a2 >= -1e-12 and axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link:
+        if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
+            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
+            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
+            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_pivot_rear_x_left_right = (
                 link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
             )
@@ -383,14 +269,11 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
             )
             pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_left  # rod rear
-            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
-            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
-            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_centre_2_x_left_right_left_right_2 = (
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
             type2_arms_aligned_left = (
-                assembly_sign_times_link_length_3_by_link_length_2
+                constant_part
                 *(
                     (
                         y - (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)/link_length_3
@@ -398,24 +281,6 @@ def unrolled(k: Constants) -> Unrolled:
                     - (
                         x - (part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_x_left)/link_length_3
                     )*rod_1_y
-                )
-                /(
-                    root(
-                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
-                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
-                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
-                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
-                    )
-                    *root(
-                        link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
-                        + pivot_rear_x_left*pivot_rear_y_left*swap_xy_times_4
-                        + pivot_rear_y_left*pivot_rear_y_left*swap_xy_squared_times_2
-                        - pivot_rear_x_left*pivot_rear_x_left*swap_xy_times_2
-                        - pivot_rear_x_left*pivot_rear_y_left*swap_xy_squared_times_4
-                        - pivot_rear_y_left*pivot_rear_y_left*swap_xy_times_2
-                    )
                 )
             )
             refusal_right_left = (
@@ -431,28 +296,10 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
             type2_arms_aligned_right = (
-                assembly_sign_times_link_length_3_by_link_length_2
+                constant_part
                 *(
                     (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
-                )
-                /(
-                    root(
-                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
-                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
-                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
-                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
-                    )
-                    *root(
-                        link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
-                        + pivot_rear_x_right*pivot_rear_y_right*swap_xy_times_4
-                        + pivot_rear_y_right*pivot_rear_y_right*swap_xy_squared_times_2
-                        - pivot_rear_x_right*pivot_rear_x_right*swap_xy_times_2
-                        - pivot_rear_x_right*pivot_rear_y_right*swap_xy_squared_times_4
-                        - pivot_rear_y_right*pivot_rear_y_right*swap_xy_times_2
-                    )
                 )
             )
             refusal_right_right = (
@@ -488,26 +335,26 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(None,)
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
-        # kept as a product
-        sine_square_a1 = (
-            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 + link_length_1_minus_link_length_2)
-            *(divisor_a1 + link_length_1_plus_link_length_2)*(divisor_a1 - link_length_1_minus_link_length_2)
-            /(swing_scale_a1*swing_scale_a1)
-        )
-        if sine_square_a1 > 0.0:
-            minus_sin_swing_a1 = sqrt(sine_square_a1)
-        else:
-            # a1: out of reach
-            if not (sine_square_a1 >= -1e-12):
-                return 4*(None,)
-            minus_sin_swing_a1 = 0.0
-        minus_sin_swing_a1_times_span_upper_y_by_divisor_a1 = minus_sin_swing_a1*span_upper_y/divisor_a1
-        cos_swing_a1 = (-link_length_1_squared_minus_link_length_2_squared - divisor_a1*divisor_a1)/swing_scale_a1
+        divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
+        divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
+        # zero where it is stretched or folded
+        below_a1 = (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
+        # zero where it is the other
+        above_a1 = (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
+        product_a1 = above_a1*below_a1
+        # a1: out of reach
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            return 4*(None,)
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)/sum_a1
+        sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - minus_sin_swing_a1_times_span_upper_y_by_divisor_a1
-        minus_sin_swing_a1_times_span_upper_x_by_divisor_a1 = minus_sin_swing_a1*span_upper_x/divisor_a1
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
+        sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*cos_swing_a1/divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + minus_sin_swing_a1_times_span_upper_x_by_divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 + sin_swing_a1_times_span_upper_x_by_divisor_a1
         part_of_span_rear_x = (
             link_length_3_times_swap_xy_by_link_length_2*x - link_length_3_times_swap_xy_by_link_length_2*y
         )
@@ -531,105 +378,53 @@ def unrolled(k: Constants) -> Unrolled:
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
-        part_of_cos_swing_a2_left_left_2 = (
-            link_length_5_squared + (link_length_1_squared - (link_length_4_squared - span_rear_x*span_rear_x))
-            + span_rear_y*span_rear_y
-        )
-        part_of_cos_swing_a2_left_left_4 = constant_part_2 + (constant_part + part_of_cos_swing_a2_left_left_2)
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        cos_swing_a2 = (
-            (
-                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
-                + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
-                - part_of_cos_swing_a2_left_left_4
-            )
-            /swing_scale_a2
-        )
+        divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
+        divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
+        # zero where it is stretched or folded
+        below_a2 = (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+        # zero where it is the other
+        above_a2 = (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        part_of_sine_square_a2_left_left_3 = (
-            link_length_2_squared_times_link_length_5_squared
-            + (
-                link_length_1_squared_times_link_length_3_squared
-                + (link_length_1_squared_times_link_length_2_squared + link_length_2_squared*span_rear_x*span_rear_x)
-            )
-        )
-        part_of_sine_square_a2_left_left_6 = (
-            constant_part_4
-            - (
-                link_length_2_squared_times_link_length_4_squared
-                - (part_of_sine_square_a2_left_left_3 + link_length_2_squared*span_rear_y*span_rear_y)
-            )
-        )
-        # kept as a product
-        sine_square_a2 = (
-            (
-                part_of_sine_square_a2_left_left_6 + divisor_a2*link_length_2_squared_times_link_length_5_times_2
-                - constant_part_5*span_rear_y*cos_a1 - constant_part_5*span_rear_x*sin_a1
-                - link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
-                - link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
-            )
-            *(
-                divisor_a2*link_length_2_squared_times_link_length_5_times_2 + constant_part_5*span_rear_y*cos_a1
-                + constant_part_5*span_rear_x*sin_a1
-                + link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
-                + link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
-                - part_of_sine_square_a2_left_left_6
-            )
-            /(constant_part_6*swing_scale_a2*swing_scale_a2)
-        )
-        minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        across_a2_times_minus_sin_swing_a2_by_divisor_a2 = across_a2*minus_sin_swing_a2/divisor_a2
+        product_a2 = above_a2*below_a2
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
+        across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
         cos_a2_left_left = (
-            across_a2_times_minus_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
+            across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
         )
-        along_a2_times_minus_sin_swing_a2_by_divisor_a2 = along_a2*minus_sin_swing_a2/divisor_a2
+        along_a2_times_sin_swing_a2_by_divisor_a2_left_right = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
         sin_a2_left_left = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_minus_sin_swing_a2_by_divisor_a2
+            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
+        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
         cos_a2_left_right = (
-            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_minus_sin_swing_a2_by_divisor_a2
+            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
         sin_a2_left_right = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_minus_sin_swing_a2_by_divisor_a2
+            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        if sine_square_a2 >= -1e-12 and effective_a2 > link_length_5_times_shortest_link:
+        if effective_a2 > link_length_5_times_shortest_link and product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
+            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
+            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
+            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_pivot_rear_x = link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
             pivot_rear_x_left = part_of_pivot_rear_x - link_length_5*cos_a2_left_left  # rod rear
             part_of_pivot_rear_y = link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
             pivot_rear_y_left = part_of_pivot_rear_y + link_length_5*sin_a2_left_left  # rod rear
-            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
-            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
-            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_centre_2_x = (
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
             type2_arms_aligned_left = (
-                assembly_sign_times_link_length_3_by_link_length_2
+                constant_part
                 *(
                     (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_left)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_left)/link_length_3)*rod_1_y
-                )
-                /(
-                    root(
-                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
-                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
-                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
-                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
-                    )
-                    *root(
-                        link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
-                        + pivot_rear_x_left*pivot_rear_y_left*swap_xy_times_4
-                        + pivot_rear_y_left*pivot_rear_y_left*swap_xy_squared_times_2
-                        - pivot_rear_x_left*pivot_rear_x_left*swap_xy_times_2
-                        - pivot_rear_x_left*pivot_rear_y_left*swap_xy_squared_times_4
-                        - pivot_rear_y_left*pivot_rear_y_left*swap_xy_times_2
-                    )
                 )
             )
             refusal_left_left = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
@@ -639,28 +434,10 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
             type2_arms_aligned_right = (
-                assembly_sign_times_link_length_3_by_link_length_2
+                constant_part
                 *(
                     (y - (-part_of_centre_2_x_left_right - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x_left_right - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
-                )
-                /(
-                    root(
-                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
-                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
-                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
-                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
-                    )
-                    *root(
-                        link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
-                        + pivot_rear_x_right*pivot_rear_y_right*swap_xy_times_4
-                        + pivot_rear_y_right*pivot_rear_y_right*swap_xy_squared_times_2
-                        - pivot_rear_x_right*pivot_rear_x_right*swap_xy_times_2
-                        - pivot_rear_x_right*pivot_rear_y_right*swap_xy_squared_times_4
-                        - pivot_rear_y_right*pivot_rear_y_right*swap_xy_times_2
-                    )
                 )
             )
             refusal_left_right = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
@@ -668,8 +445,8 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_left = 3.0
             refusal_left_right = 3.0
         axis_a1_left = offset_a1 + arctan2(sin_a1, cos_a1)*RADIAN
-        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + minus_sin_swing_a1_times_span_upper_y_by_divisor_a1
-        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - minus_sin_swing_a1_times_span_upper_x_by_divisor_a1
+        sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 + sin_swing_a1_times_span_upper_y_by_divisor_a1
+        cos_a1 = cos_swing_a1_times_span_upper_y_by_divisor_a1 - sin_swing_a1_times_span_upper_x_by_divisor_a1
         along_a2 = (
             (
                 link_length_2_times_span_rear_x - link_length_1_times_link_length_2*sin_a1
@@ -686,53 +463,33 @@ def unrolled(k: Constants) -> Unrolled:
         )
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
-        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        cos_swing_a2 = (
-            (
-                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
-                + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
-                - part_of_cos_swing_a2_left_left_4
-            )
-            /swing_scale_a2
-        )
+        divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
+        divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
+        # zero where it is stretched or folded
+        below_a2 = (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+        # zero where it is the other
+        above_a2 = (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        # kept as a product
-        sine_square_a2 = (
-            (
-                part_of_sine_square_a2_left_left_6 + divisor_a2*link_length_2_squared_times_link_length_5_times_2
-                - constant_part_5*span_rear_y*cos_a1 - constant_part_5*span_rear_x*sin_a1
-                - link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
-                - link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
-            )
-            *(
-                divisor_a2*link_length_2_squared_times_link_length_5_times_2 + constant_part_5*span_rear_y*cos_a1
-                + constant_part_5*span_rear_x*sin_a1
-                + link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
-                + link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
-                - part_of_sine_square_a2_left_left_6
-            )
-            /(constant_part_6*swing_scale_a2*swing_scale_a2)
-        )
-        minus_sin_swing_a2 = (sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)
-        across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right = across_a2*minus_sin_swing_a2/divisor_a2
-        cos_a2_right_left = (
-            across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
-        )
-        along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right = along_a2*minus_sin_swing_a2/divisor_a2
+        product_a2 = above_a2*below_a2
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
+        across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
+        cos_a2_right_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
+        along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
-        sin_a2_right_left = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
-        )
-        cos_a2_right_right = (
-            along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
-        )
-        sin_a2_right_right = (
-            across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_minus_sin_swing_a2_by_divisor_a2_left_right
-        )
+        sin_a2_right_left = across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
+        swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
+        cos_a2_right_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
+        sin_a2_right_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        if sine_square_a2 >= -1e-12 and effective_a2 > link_length_5_times_shortest_link:
+        if effective_a2 > link_length_5_times_shortest_link and product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
+            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
+            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
+            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_pivot_rear_x_left_right = (
                 link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1
             )
@@ -741,14 +498,11 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1
             )
             pivot_rear_y_left = part_of_pivot_rear_y_left_right + link_length_5*sin_a2_right_left  # rod rear
-            part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
-            rod_1_x = x - (part_of_centre_1_x - minus_pivot_upper_x)
-            rod_1_y = y - (-minus_pivot_upper_y - part_of_centre_1_x)
             part_of_centre_2_x_left_right_left_right_2 = (
                 link_length_2_times_swap_xy*pivot_rear_x_left - link_length_2_times_swap_xy*pivot_rear_y_left
             )
             type2_arms_aligned_left = (
-                assembly_sign_times_link_length_3_by_link_length_2
+                constant_part
                 *(
                     (
                         y - (-part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_y_left)/link_length_3
@@ -756,24 +510,6 @@ def unrolled(k: Constants) -> Unrolled:
                     - (
                         x - (part_of_centre_2_x_left_right_left_right_2 - link_length_2*pivot_rear_x_left)/link_length_3
                     )*rod_1_y
-                )
-                /(
-                    root(
-                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
-                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
-                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
-                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
-                    )
-                    *root(
-                        link_length_4_squared + pivot_rear_x_left*pivot_rear_x_left*swap_xy_squared_times_2
-                        + pivot_rear_x_left*pivot_rear_y_left*swap_xy_times_4
-                        + pivot_rear_y_left*pivot_rear_y_left*swap_xy_squared_times_2
-                        - pivot_rear_x_left*pivot_rear_x_left*swap_xy_times_2
-                        - pivot_rear_x_left*pivot_rear_y_left*swap_xy_squared_times_4
-                        - pivot_rear_y_left*pivot_rear_y_left*swap_xy_times_2
-                    )
                 )
             )
             refusal_right_left = 0.0 if type2_arms_aligned_left >= min_type2_margin else 3.0
@@ -783,28 +519,10 @@ def unrolled(k: Constants) -> Unrolled:
                 link_length_2_times_swap_xy*pivot_rear_x_right - link_length_2_times_swap_xy*pivot_rear_y_right
             )
             type2_arms_aligned_right = (
-                assembly_sign_times_link_length_3_by_link_length_2
+                constant_part
                 *(
                     (y - (-part_of_centre_2_x - link_length_2*pivot_rear_y_right)/link_length_3)*rod_1_x
                     - (x - (part_of_centre_2_x - link_length_2*pivot_rear_x_right)/link_length_3)*rod_1_y
-                )
-                /(
-                    root(
-                        link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
-                        + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
-                        + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
-                        - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
-                        - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
-                    )
-                    *root(
-                        link_length_4_squared + pivot_rear_x_right*pivot_rear_x_right*swap_xy_squared_times_2
-                        + pivot_rear_x_right*pivot_rear_y_right*swap_xy_times_4
-                        + pivot_rear_y_right*pivot_rear_y_right*swap_xy_squared_times_2
-                        - pivot_rear_x_right*pivot_rear_x_right*swap_xy_times_2
-                        - pivot_rear_x_right*pivot_rear_y_right*swap_xy_squared_times_4
-                        - pivot_rear_y_right*pivot_rear_y_right*swap_xy_times_2
-                    )
                 )
             )
             refusal_right_right = 0.0 if type2_arms_aligned_right >= min_type2_margin else 3.0
@@ -851,21 +569,19 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
-        # kept as a product
-        sine_square_a1 = (
-            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 + link_length_1_minus_link_length_2)
-            *(divisor_a1 + link_length_1_plus_link_length_2)*(divisor_a1 - link_length_1_minus_link_length_2)
-            /(swing_scale_a1*swing_scale_a1)
-        )
-        if sine_square_a1 > 0.0:
-            minus_sin_swing_a1 = sqrt(sine_square_a1)*sigma_t
-        else:
-            # a1: out of reach
-            if not (sine_square_a1 >= -1e-12):
-                return None
-            minus_sin_swing_a1 = 0.0
-        cos_swing_a1 = (-link_length_1_squared_minus_link_length_2_squared - divisor_a1*divisor_a1)/swing_scale_a1
-        sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 - minus_sin_swing_a1*span_upper_y/divisor_a1
+        # zero where it is stretched or folded
+        below_a1 = (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
+        # zero where it is the other
+        above_a1 = (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
+        product_a1 = above_a1*below_a1
+        # a1: out of reach
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            return None
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_t/sum_a1
+        sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
         span_rear_x = (
             link_length_3_times_swap_xy_by_link_length_2*x - link_length_3_by_link_length_2*x
@@ -878,7 +594,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_2
         )
-        cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 + minus_sin_swing_a1*span_upper_x/divisor_a1
+        cos_a1 = span_upper_y*cos_swing_a1/divisor_a1 - span_upper_x*sin_swing_a1/divisor_a1
         # rod rear
         span_rear_y = (
             link_length_3_times_swap_xy_by_link_length_2*y - link_length_3_by_link_length_2*y
@@ -897,53 +613,32 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                constant_part_7 + divisor_a2*link_length_2_squared_times_link_length_5_times_2
-                + link_length_2_squared*span_rear_x*span_rear_x + link_length_2_squared*span_rear_y*span_rear_y
-                - constant_part_5*span_rear_y*cos_a1 - constant_part_5*span_rear_x*sin_a1
-                - link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
-                - link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1
-            )
-            *(
-                divisor_a2*link_length_2_squared_times_link_length_5_times_2 + constant_part_5*span_rear_y*cos_a1
-                + constant_part_5*span_rear_x*sin_a1
-                + link_length_1_times_link_length_2_squared_times_2*span_rear_y*cos_a1
-                + link_length_1_times_link_length_2_squared_times_2*span_rear_x*sin_a1 - constant_part_7
-                - link_length_2_squared*span_rear_x*span_rear_x - link_length_2_squared*span_rear_y*span_rear_y
-            )
-            /(constant_part_6*swing_scale_a2*swing_scale_a2)
-        )
-        if sine_square_a2 > 0.0:
-            minus_sin_swing_a2 = sqrt(sine_square_a2)*sigma_w
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return None
-            minus_sin_swing_a2 = 0.0
+        # zero where it is stretched or folded
+        below_a2 = (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 - link_length_4_minus_link_length_5)
+        # zero where it is the other
+        above_a2 = (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 + link_length_4_minus_link_length_5)
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+            return None
         minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
         minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
-        cos_swing_a2 = (
-            (
-                constant_part_3*span_rear_y*cos_a1 + constant_part_3*span_rear_x*sin_a1
-                + link_length_1_times_2*span_rear_y*cos_a1 + link_length_1_times_2*span_rear_x*sin_a1
-                - constant_part_8 - span_rear_x*span_rear_x - span_rear_y*span_rear_y
-            )
-            /swing_scale_a2
-        )
-        cos_a2 = across_a2*minus_sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
+        rod_1_x = x - (minus_pivot_upper_x*swap_xy - minus_pivot_upper_x - minus_pivot_upper_y*swap_xy)
+        rod_1_y = y - (minus_pivot_upper_y*swap_xy - minus_pivot_upper_y - minus_pivot_upper_x*swap_xy)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_w/sum_a2
+        cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_x = (
             link_length_1*sin_a1 + link_length_1_times_link_length_3_by_link_length_2*sin_a1 - link_length_5*cos_a2
         )
-        sin_a2 = across_a2*cos_swing_a2/divisor_a2 - along_a2*minus_sin_swing_a2/divisor_a2
+        sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_y = (
             link_length_1*cos_a1 + link_length_1_times_link_length_3_by_link_length_2*cos_a1 + link_length_5*sin_a2
         )
-        rod_1_x = x - (minus_pivot_upper_x*swap_xy - minus_pivot_upper_x - minus_pivot_upper_y*swap_xy)
-        rod_1_y = y - (minus_pivot_upper_y*swap_xy - minus_pivot_upper_y - minus_pivot_upper_x*swap_xy)
         centre_2_x = (
             (
                 link_length_2_times_swap_xy*pivot_rear_x - link_length_2*pivot_rear_x
@@ -958,25 +653,7 @@ def unrolled(k: Constants) -> Unrolled:
             )
             /link_length_3
         )
-        type2_arms_aligned = (
-            assembly_sign_times_link_length_3_by_link_length_2*((y - centre_2_y)*rod_1_x - (x - centre_2_x)*rod_1_y)
-            /(
-                root(
-                    link_length_2_squared + minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_squared_times_2
-                    + minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_times_4
-                    + minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_squared_times_2
-                    - minus_pivot_upper_x*minus_pivot_upper_x*swap_xy_times_2
-                    - minus_pivot_upper_x*minus_pivot_upper_y*swap_xy_squared_times_4
-                    - minus_pivot_upper_y*minus_pivot_upper_y*swap_xy_times_2
-                )
-                *root(
-                    link_length_4_squared + pivot_rear_x*pivot_rear_x*swap_xy_squared_times_2
-                    + pivot_rear_x*pivot_rear_y*swap_xy_times_4 + pivot_rear_y*pivot_rear_y*swap_xy_squared_times_2
-                    - pivot_rear_x*pivot_rear_x*swap_xy_times_2 - pivot_rear_x*pivot_rear_y*swap_xy_squared_times_4
-                    - pivot_rear_y*pivot_rear_y*swap_xy_times_2
-                )
-            )
-        )
+        type2_arms_aligned = constant_part*((y - centre_2_y)*rod_1_x - (x - centre_2_x)*rod_1_y)
         # arms_aligned: the other assembly mode, or too near to losing the plate
         if not (type2_arms_aligned >= min_type2_margin):
             return None

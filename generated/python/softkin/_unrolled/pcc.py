@@ -32,11 +32,10 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     machine_scale_times_plane = 1e-6*machine_scale
+    scale_a2_from_a1_squared_times_rounding = 1e-12*scale_a2_from_a1*scale_a2_from_a1
+    machine_scale_times_free_angle = 1e-11*machine_scale
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-    scale_a2_from_a1_squared = scale_a2_from_a1*scale_a2_from_a1
-    link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
-    machine_scale_times_free_angle = 1e-11*machine_scale
     no_offsets = not any((offset_a1, offset_a2,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -53,20 +52,20 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane):
             return 2*(3.0,)
         reach = sqrt(x*x + y*y)
-        # kept as a product
-        sine_square_a2_from_a1 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
-            /scale_a2_from_a1_squared
-        )
-        if sine_square_a2_from_a1 > 0.0:
-            sin_a2_from_a1 = sqrt(sine_square_a2_from_a1)
-        else:
-            # a2_from_a1: out of reach
-            if not (sine_square_a2_from_a1 >= -1e-12):
-                return 2*(3.0,)
-            sin_a2_from_a1 = 0.0
-        cos_a2_from_a1 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2_from_a1
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
+        # zero where it is stretched or folded
+        below_a2_from_a1 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # zero where it is the other
+        above_a2_from_a1 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
+        # a2_from_a1: out of reach
+        if not (product_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
+            return 2*(3.0,)
+        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1 = 2.0*(sqrt(product_a2_from_a1) if product_a2_from_a1 > 0.0 else 0.0)/sum_a2_from_a1
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(
                 link_length_2*sin_a2_from_a1 + 0.0, link_length_1 + link_length_2*cos_a2_from_a1 + 0.0,
@@ -128,20 +127,20 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane):
             return 2*(None,)
         reach = sqrt(x*x + y*y)
-        # kept as a product
-        sine_square_a2_from_a1 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
-            /scale_a2_from_a1_squared
-        )
-        if sine_square_a2_from_a1 > 0.0:
-            sin_a2_from_a1 = sqrt(sine_square_a2_from_a1)
-        else:
-            # a2_from_a1: out of reach
-            if not (sine_square_a2_from_a1 >= -1e-12):
-                return 2*(None,)
-            sin_a2_from_a1 = 0.0
-        cos_a2_from_a1 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2_from_a1
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
+        # zero where it is stretched or folded
+        below_a2_from_a1 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # zero where it is the other
+        above_a2_from_a1 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
+        # a2_from_a1: out of reach
+        if not (product_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
+            return 2*(None,)
+        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1 = 2.0*(sqrt(product_a2_from_a1) if product_a2_from_a1 > 0.0 else 0.0)/sum_a2_from_a1
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
             angle_of_x = arctan2(y, x)
@@ -168,20 +167,20 @@ def unrolled(k: Constants) -> Unrolled:
         if not (abs(z) <= machine_scale_times_plane):
             return None
         reach = sqrt(x*x + y*y)
-        # kept as a product
-        sine_square_a2_from_a1 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
-            /scale_a2_from_a1_squared
+        # zero where it is stretched or folded
+        below_a2_from_a1 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        # zero where it is the other
+        above_a2_from_a1 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
+        # a2_from_a1: out of reach
+        if not (product_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
+            return None
+        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1 = (
+            2.0*(sqrt(product_a2_from_a1) if product_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
         )
-        if sine_square_a2_from_a1 > 0.0:
-            sin_a2_from_a1 = sqrt(sine_square_a2_from_a1)*sigma_elbow
-        else:
-            # a2_from_a1: out of reach
-            if not (sine_square_a2_from_a1 >= -1e-12):
-                return None
-            sin_a2_from_a1 = 0.0
-        cos_a2_from_a1 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2_from_a1
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
         else:

@@ -41,11 +41,10 @@ def unrolled(k: Constants) -> Unrolled:
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
     machine_scale_times_free_angle = 1e-11*machine_scale
+    angle_of_a3_by_effective_q3_2 = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
+    swing_scale_q3_2_squared_times_rounding = 1e-12*swing_scale_q3_2*swing_scale_q3_2
     a2_plus_effective_q3_2 = a2 + effective_q3_2
     a2_minus_effective_q3_2 = a2 - effective_q3_2
-    swing_scale_q3_2_squared = swing_scale_q3_2*swing_scale_q3_2
-    a2_squared_plus_effective_q3_2_squared = a2*a2 + effective_q3_2*effective_q3_2
-    angle_of_a3_by_effective_q3_2 = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -92,17 +91,18 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
-            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
-        )
-        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        # zero where it is stretched or folded
+        below_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        above_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(
-                effective_q3_2*minus_sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0,
-            )
+            angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -114,8 +114,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_front_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_down - open_a2 < 179.999999999:
             axis_a2_front_down = nearest_period(axis_a2_front_down, open_a2)
-        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3_2 - minus_angle_of_swing_q3
+        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
@@ -127,12 +127,12 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_front_up - open_a2 < 179.999999999:
             axis_a2_front_up = nearest_period(axis_a2_front_up, open_a2)
-        angle_q3 = angle_of_a3_by_effective_q3_2 + minus_angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
         axis_a3_front_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
         # limits of A2, limits of A3
-        if sine_square_q3 >= -1e-12 and axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1:
+        if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and product_q3 >= -swing_scale_q3_2_squared_times_rounding:
             refusal_front_down = (
                 0.0
                 if (axis_a2_front_down >= lowest_a2) and (axis_a3_front_down >= lowest_a3) and (
@@ -152,17 +152,18 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_front_up = 3.0
         wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
-            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
-        )
-        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        # zero where it is stretched or folded
+        below_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        above_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(
-                effective_q3_2*minus_sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0,
-            )
+            angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
             angle_q2_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -173,8 +174,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_back_down = offset_a2 + angle_q2_down/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_down - open_a2 < 179.999999999:
             axis_a2_back_down = nearest_period(axis_a2_back_down, open_a2)
-        minus_angle_of_swing_q3 = arctan2(minus_sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
-        angle_q3 = angle_of_a3_by_effective_q3_2 - minus_angle_of_swing_q3
+        angle_of_swing_q3 = arctan2(-sin_swing_q3 + 0.0, cos_swing_q3 + 0.0)
+        angle_q3 = angle_of_a3_by_effective_q3_2 + angle_of_swing_q3
         axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
             axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
@@ -184,12 +185,12 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_back_up - open_a2 < 179.999999999:
             axis_a2_back_up = nearest_period(axis_a2_back_up, open_a2)
-        angle_q3 = angle_of_a3_by_effective_q3_2 + minus_angle_of_swing_q3
+        angle_q3 = angle_of_a3_by_effective_q3_2 - angle_of_swing_q3
         axis_a3_back_up = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
         # limits of A2, limits of A3
-        if sine_square_q3 >= -1e-12 and axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1:
+        if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and product_q3 >= -swing_scale_q3_2_squared_times_rounding:
             refusal_back_down = (
                 0.0
                 if (axis_a2_back_down >= lowest_a2) and (axis_a3_back_down >= lowest_a3) and (
@@ -256,17 +257,20 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
-            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
-        )
-        refusal_front = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        # zero where it is stretched or folded
+        below_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        above_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        refusal_front = 0.0 if product_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN
-        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3_2*minus_sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
+            angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_front_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_front_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -274,20 +278,23 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_front_down = free_a2
             angle_q2_front_up = free_a2
-        minus_angle_of_swing_q3_front_down = arctan2(minus_sin_swing_q3, cos_swing_q3)
+        angle_of_swing_q3_front_down = arctan2(-sin_swing_q3, cos_swing_q3)
         wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
-            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
-        )
-        refusal_back = 0.0 if sine_square_q3 >= -1e-12 else 3.0  # q3: out of reach
+        a2_minus_reach = a2 - reach
+        a2_plus_reach = a2 + reach
+        # zero where it is stretched or folded
+        below_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        above_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        refusal_back = 0.0 if product_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN
-        minus_sin_swing_q3 = (sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
-            angle_of_arm_across_q2 = arctan2(effective_q3_2*minus_sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
+            angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
             angle_q2_back_down = angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
             angle_q2_back_up = -angle_of_arm_across_q2 - angle_of_wrist_y_from_q1
@@ -295,12 +302,12 @@ def unrolled(k: Constants) -> Unrolled:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
             angle_q2_back_down = free_a2
             angle_q2_back_up = free_a2
-        minus_angle_of_swing_q3_back_down = arctan2(minus_sin_swing_q3, cos_swing_q3)
+        angle_of_swing_q3_back_down = arctan2(-sin_swing_q3, cos_swing_q3)
         return (
             (
                 (
                     axis_a1_front, offset_a2 + angle_q2_front_down*RADIAN,
-                    offset_a3 + (angle_of_a3_by_effective_q3_2 - minus_angle_of_swing_q3_front_down)*RADIAN,
+                    offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_front_down)*RADIAN,
                 )
                 if refusal_front == 0.0
                 else None
@@ -308,7 +315,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_back, offset_a2 + angle_q2_back_down*RADIAN,
-                    offset_a3 + (angle_of_a3_by_effective_q3_2 - minus_angle_of_swing_q3_back_down)*RADIAN,
+                    offset_a3 + (angle_of_a3_by_effective_q3_2 + angle_of_swing_q3_back_down)*RADIAN,
                 )
                 if refusal_back == 0.0
                 else None
@@ -316,7 +323,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_front, offset_a2 + angle_q2_front_up*RADIAN,
-                    offset_a3 + (angle_of_a3_by_effective_q3_2 + minus_angle_of_swing_q3_front_down)*RADIAN,
+                    offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_front_down)*RADIAN,
                 )
                 if refusal_front == 0.0
                 else None
@@ -324,7 +331,7 @@ def unrolled(k: Constants) -> Unrolled:
             (
                 (
                     axis_a1_back, offset_a2 + angle_q2_back_up*RADIAN,
-                    offset_a3 + (angle_of_a3_by_effective_q3_2 + minus_angle_of_swing_q3_back_down)*RADIAN,
+                    offset_a3 + (angle_of_a3_by_effective_q3_2 - angle_of_swing_q3_back_down)*RADIAN,
                 )
                 if refusal_back == 0.0
                 else None
@@ -360,22 +367,20 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_x_from_q1 = point_from_q1 - a1  # what the unknown links must span
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # kept as a product
-        sine_square_q3 = (
-            (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 + reach)
-            *(a2_plus_effective_q3_2 - reach)/swing_scale_q3_2_squared
-        )
-        if sine_square_q3 > 0.0:
-            minus_sin_swing_q3 = sqrt(sine_square_q3)*sigma_elbow
-        else:
-            # q3: out of reach
-            if not (sine_square_q3 >= -1e-12):
-                return None
-            minus_sin_swing_q3 = 0.0
-        cos_swing_q3 = (reach*reach - a2_squared_plus_effective_q3_2_squared)/swing_scale_q3_2
+        # zero where it is stretched or folded
+        below_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
+        above_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)  # zero where it is the other
+        product_q3 = above_q3*below_q3
+        # q3: out of reach
+        if not (product_q3 >= -swing_scale_q3_2_squared_times_rounding):
+            return None
+        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = -2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
+        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
             angle_q2 = (
-                arctan2(effective_q3_2*minus_sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
+                arctan2(-effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
                 - arctan2(wrist_x_from_q1, wrist_y_from_q1)
             )
         else:
@@ -383,11 +388,11 @@ def unrolled(k: Constants) -> Unrolled:
         if no_offsets:
             return (
                 arctan2(sin_q1, cos_q1)*RADIAN, angle_q2*RADIAN,
-                (angle_of_a3_by_effective_q3_2 - arctan2(minus_sin_swing_q3, cos_swing_q3))*RADIAN,
+                (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3))*RADIAN,
             )
         return (
             offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN, offset_a2 + angle_q2*RADIAN,
-            offset_a3 + (angle_of_a3_by_effective_q3_2 - arctan2(minus_sin_swing_q3, cos_swing_q3))*RADIAN,
+            offset_a3 + (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3))*RADIAN,
         )
 
     return Unrolled(every_branch, branches, branch)

@@ -38,11 +38,10 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
+    scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
+    machine_scale_times_free_angle = 1e-11*machine_scale
     arm_length_1_plus_arm_length_2 = arm_length_1 + arm_length_2
     arm_length_1_minus_arm_length_2 = arm_length_1 - arm_length_2
-    scale_a2_squared = scale_a2*scale_a2
-    arm_length_1_squared_plus_arm_length_2_squared = arm_length_1*arm_length_1 + arm_length_2*arm_length_2
-    machine_scale_times_free_angle = 1e-11*machine_scale
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_z,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -68,23 +67,24 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a2 = (
-            (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
-            *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
-        )
-        if sine_square_a2 > 0.0:
-            sin_a2 = sqrt(sine_square_a2)
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return 2*(3.0,)
-            sin_a2 = 0.0
+        arm_length_1_minus_reach = arm_length_1 - reach
+        arm_length_1_plus_reach = arm_length_1 + reach
+        # zero where it is stretched or folded
+        below_a2 = (arm_length_1_minus_reach + arm_length_2)*(arm_length_1_plus_reach + arm_length_2)
+        # zero where it is the other
+        above_a2 = (arm_length_2 - arm_length_1_minus_reach)*(arm_length_1_plus_reach - arm_length_2)
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -scale_a2_squared_times_rounding):
+            return 2*(3.0,)
         axis_z = offset_z + z
         # limits of Z
         if not (axis_z >= lowest_z and axis_z <= highest_z):
             return 2*(3.0,)
-        cos_a2 = (reach*reach - arm_length_1_squared_plus_arm_length_2_squared)/scale_a2
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2 + 0.0, arm_length_1 + arm_length_2*cos_a2 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
@@ -156,19 +156,20 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a2 = (
-            (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
-            *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
-        )
-        if sine_square_a2 > 0.0:
-            sin_a2 = sqrt(sine_square_a2)
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return 2*(None,)
-            sin_a2 = 0.0
-        cos_a2 = (reach*reach - arm_length_1_squared_plus_arm_length_2_squared)/scale_a2
+        arm_length_1_minus_reach = arm_length_1 - reach
+        arm_length_1_plus_reach = arm_length_1 + reach
+        # zero where it is stretched or folded
+        below_a2 = (arm_length_1_minus_reach + arm_length_2)*(arm_length_1_plus_reach + arm_length_2)
+        # zero where it is the other
+        above_a2 = (arm_length_2 - arm_length_1_minus_reach)*(arm_length_1_plus_reach - arm_length_2)
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -scale_a2_squared_times_rounding):
+            return 2*(None,)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -206,19 +207,18 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - arm_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a2 = (
-            (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
-            *(arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)/scale_a2_squared
-        )
-        if sine_square_a2 > 0.0:
-            sin_a2 = sqrt(sine_square_a2)*sigma_elbow
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return None
-            sin_a2 = 0.0
-        cos_a2 = (reach*reach - arm_length_1_squared_plus_arm_length_2_squared)/scale_a2
+        # zero where it is stretched or folded
+        below_a2 = (arm_length_1_plus_arm_length_2 + reach)*(arm_length_1_plus_arm_length_2 - reach)
+        # zero where it is the other
+        above_a2 = (reach - arm_length_1_minus_arm_length_2)*(arm_length_1_minus_arm_length_2 + reach)
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -scale_a2_squared_times_rounding):
+            return None
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(arm_length_2*sin_a2, arm_length_1 + arm_length_2*cos_a2)
         else:

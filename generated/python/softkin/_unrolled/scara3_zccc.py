@@ -38,11 +38,10 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     single_a4 = k.single_a4
+    scale_a3_squared_times_rounding = 1e-12*scale_a3*scale_a3
+    machine_scale_times_free_angle = 1e-11*machine_scale
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-    scale_a3_squared = scale_a3*scale_a3
-    link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
-    machine_scale_times_free_angle = 1e-11*machine_scale
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -68,23 +67,24 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a3 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
-        )
-        if sine_square_a3 > 0.0:
-            sin_a3 = sqrt(sine_square_a3)
-        else:
-            # a3: out of reach
-            if not (sine_square_a3 >= -1e-12):
-                return 2*(3.0,)
-            sin_a3 = 0.0
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
+        # zero where it is stretched or folded
+        below_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # zero where it is the other
+        above_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        product_a3 = above_a3*below_a3
+        # a3: out of reach
+        if not (product_a3 >= -scale_a3_squared_times_rounding):
+            return 2*(3.0,)
         axis_a1 = offset_a1 + z
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3.0,)
-        cos_a3 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a3
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_a3 = (above_a3 - below_a3)/sum_a3
+        sin_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)/sum_a3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3 + 0.0, link_length_1 + link_length_2*cos_a3 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
@@ -156,20 +156,21 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a3 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
-        )
-        if sine_square_a3 > 0.0:
-            sin_a3 = sqrt(sine_square_a3)
-        else:
-            # a3: out of reach
-            if not (sine_square_a3 >= -1e-12):
-                return 2*(None,)
-            sin_a3 = 0.0
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
+        # zero where it is stretched or folded
+        below_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # zero where it is the other
+        above_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        product_a3 = above_a3*below_a3
+        # a3: out of reach
+        if not (product_a3 >= -scale_a3_squared_times_rounding):
+            return 2*(None,)
         axis_a1 = offset_a1 + z
-        cos_a3 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a3
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_a3 = (above_a3 - below_a3)/sum_a3
+        sin_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)/sum_a3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -206,19 +207,18 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a3 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a3_squared
-        )
-        if sine_square_a3 > 0.0:
-            sin_a3 = sqrt(sine_square_a3)*sigma_elbow
-        else:
-            # a3: out of reach
-            if not (sine_square_a3 >= -1e-12):
-                return None
-            sin_a3 = 0.0
-        cos_a3 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a3
+        # zero where it is stretched or folded
+        below_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        # zero where it is the other
+        above_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        product_a3 = above_a3*below_a3
+        # a3: out of reach
+        if not (product_a3 >= -scale_a3_squared_times_rounding):
+            return None
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_a3 = (above_a3 - below_a3)/sum_a3
+        sin_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
         if reach > machine_scale_times_free_angle:
             angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
         else:

@@ -38,12 +38,11 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a4 = k.single_a4
-    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
-    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-    scale_a2_squared = scale_a2*scale_a2
-    link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
+    scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
     machine_scale_times_free_angle = 1e-11*machine_scale
     pitch_zc_by_360 = pitch_zc/360.0
+    link_length_1_plus_link_length_2 = link_length_1 + link_length_2
+    link_length_1_minus_link_length_2 = link_length_1 - link_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3, offset_a4,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -64,19 +63,20 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2*(3.0,)
         reach = sqrt(x*x + y*y)
-        # kept as a product
-        sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
-        )
-        if sine_square_a2 > 0.0:
-            sin_a2 = sqrt(sine_square_a2)
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return 2*(3.0,)
-            sin_a2 = 0.0
-        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
+        # zero where it is stretched or folded
+        below_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # zero where it is the other
+        above_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -scale_a2_squared_times_rounding):
+            return 2*(3.0,)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_x = arctan2(y + 0.0, x + 0.0)
@@ -149,19 +149,20 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return 2*(None,)
         reach = sqrt(x*x + y*y)
-        # kept as a product
-        sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
-        )
-        if sine_square_a2 > 0.0:
-            sin_a2 = sqrt(sine_square_a2)
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return 2*(None,)
-            sin_a2 = 0.0
-        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
+        # zero where it is stretched or folded
+        below_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # zero where it is the other
+        above_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -scale_a2_squared_times_rounding):
+            return 2*(None,)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_x = arctan2(y, x)
@@ -204,19 +205,18 @@ def unrolled(k: Constants) -> Unrolled:
         if not (heading_length > 1e-11):
             return None
         reach = sqrt(x*x + y*y)
-        # kept as a product
-        sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
-        )
-        if sine_square_a2 > 0.0:
-            sin_a2 = sqrt(sine_square_a2)*sigma_elbow
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return None
-            sin_a2 = 0.0
-        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
+        # zero where it is stretched or folded
+        below_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        # zero where it is the other
+        above_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -scale_a2_squared_times_rounding):
+            return None
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:

@@ -43,11 +43,10 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     machine_scale_times_plane = 1e-6*machine_scale
+    scale_a2_squared_times_rounding = 1e-12*scale_a2*scale_a2
+    machine_scale_times_free_angle = 1e-11*machine_scale
     link_length_1_plus_link_length_2 = link_length_1 + link_length_2
     link_length_1_minus_link_length_2 = link_length_1 - link_length_2
-    scale_a2_squared = scale_a2*scale_a2
-    link_length_1_squared_plus_link_length_2_squared = link_length_1*link_length_1 + link_length_2*link_length_2
-    machine_scale_times_free_angle = 1e-11*machine_scale
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         """Every slot: its axes, or the number of its status."""
@@ -75,19 +74,20 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
-        )
-        if sine_square_a2 > 0.0:
-            sin_a2 = sqrt(sine_square_a2)
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return 2*(3.0,)
-            sin_a2 = 0.0
-        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
+        # zero where it is stretched or folded
+        below_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # zero where it is the other
+        above_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -scale_a2_squared_times_rounding):
+            return 2*(3.0,)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
@@ -197,19 +197,20 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
-        )
-        if sine_square_a2 > 0.0:
-            sin_a2 = sqrt(sine_square_a2)
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return 2*(None,)
-            sin_a2 = 0.0
-        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
+        link_length_1_minus_reach = link_length_1 - reach
+        link_length_1_plus_reach = link_length_1 + reach
+        # zero where it is stretched or folded
+        below_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # zero where it is the other
+        above_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -scale_a2_squared_times_rounding):
+            return 2*(None,)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -280,19 +281,18 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # kept as a product
-        sine_square_a2 = (
-            (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-            *(link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)/scale_a2_squared
-        )
-        if sine_square_a2 > 0.0:
-            sin_a2 = sqrt(sine_square_a2)*sigma_elbow
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return None
-            sin_a2 = 0.0
-        cos_a2 = (reach*reach - link_length_1_squared_plus_link_length_2_squared)/scale_a2
+        # zero where it is stretched or folded
+        below_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        # zero where it is the other
+        above_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -scale_a2_squared_times_rounding):
+            return None
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_a2 = (above_a2 - below_a2)/sum_a2
+        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:

@@ -19,7 +19,8 @@ def unrolled(k: Constants) -> Unrolled:
     arm_length_1 = k.arm_length_1
     arm_length_2 = k.arm_length_2
     assembly_sign = k.assembly_sign
-    distance = k.distance
+    fixed_length_1 = k.fixed_length_1
+    fixed_length_2 = k.fixed_length_2
     highest_a1 = k.highest_a1
     highest_a2 = k.highest_a2
     highest_a3 = k.highest_a3
@@ -37,29 +38,17 @@ def unrolled(k: Constants) -> Unrolled:
     single_a1 = k.single_a1
     single_a2 = k.single_a2
     single_a3 = k.single_a3
-    stewart_radius = k.stewart_radius
-    constant_part = arm_1_radius - root(stewart_radius*stewart_radius - 0.25*distance*distance)
-    distance_squared_by_4_minus_stewart_radius_squared = 0.25*distance*distance - stewart_radius*stewart_radius
-    arm_1_radius_times_2 = 2.0*arm_1_radius
-    arm_length_1_times_2 = 2.0*arm_length_1
-    constant_part_2 = (
-        arm_1_radius*arm_1_radius + 2.0*arm_1_radius*arm_length_1 + arm_length_1*arm_length_1
-        + stewart_radius*stewart_radius - arm_length_2*arm_length_2 - 0.25*distance*distance
-    )
+    arm_1_radius_minus_fixed_length_1 = arm_1_radius - fixed_length_1
     arm_length_1_times_shortest_link = 1e-9*arm_length_1
-    arm_length_1_squared = arm_length_1*arm_length_1
-    arm_length_2_squared = arm_length_2*arm_length_2
-    constant_part_3 = 0.5*arm_1_radius - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)
-    constant_part_4 = (
-        0.5*root(3.0)*arm_1_radius - 0.5*root(stewart_radius*stewart_radius - 0.25*distance*distance)*root(3.0)
-    )
+    arm_length_1_times_2 = 2.0*arm_length_1
+    arm_1_radius_by_2_minus_fixed_length_1_by_2 = 0.5*arm_1_radius - 0.5*fixed_length_1
+    constant_part = 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1
     share_of_arm_length_1 = 5e-10*arm_length_1
     one_by_2_by_arm_length_2 = 0.5/arm_length_2
     root_of_3_by_2_by_arm_length_2 = 0.5*root(3.0)/arm_length_2
     arm_length_1_by_2 = 0.5*arm_length_1
     root_of_3_times_arm_length_1_by_2 = 0.5*root(3.0)*arm_length_1
     assembly_sign_by_constant_part = assembly_sign/(arm_length_2*arm_length_2*arm_length_2)
-    arm_length_1_squared_minus_arm_length_2_squared = arm_length_1*arm_length_1 - arm_length_2*arm_length_2
     no_offsets = not any((offset_a1, offset_a2, offset_a3,))
 
     def every_branch(position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
@@ -72,71 +61,49 @@ def unrolled(k: Constants) -> Unrolled:
             and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
         ):
             return 8*(2.0,)
-        span_1_x = constant_part + x  # rod 1
-        span_1_z_squared = -distance_squared_by_4_minus_stewart_radius_squared
-        # rod 1
-        span_1_z = (
-            z
-            - root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-        )
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1
+        span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return 8*(3.0,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
-        arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared = (
-            arm_length_1_squared + divisor_a1*divisor_a1 + y*y
-        )
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (
-                arm_length_2_squared + arm_length_1_times_2*divisor_a1
-                - arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared
-            )
-            *(
-                arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared + arm_length_1_times_2*divisor_a1
-                - arm_length_2_squared
-            )
-            /(swing_scale_a1*swing_scale_a1)
-        )
-        if sine_square_a1 > 0.0:
-            sin_swing_a1 = sqrt(sine_square_a1)
-        else:
-            # a1: out of reach
-            if not (sine_square_a1 >= -1e-12):
-                return 8*(3.0,)
-            sin_swing_a1 = 0.0
-        span_2_x = x - constant_part_3  # rod 2
-        span_2_y = constant_part_4 + y  # rod 2
+        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
+        # zero where it is stretched or folded
+        below_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+        # zero where it is the other
+        above_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        product_a1 = above_a1*below_a1
+        # a1: out of reach
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            return 8*(3.0,)
+        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
+        span_2_y = constant_part + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > share_of_arm_length_1):
             return 8*(3.0,)
-        arm_length_2_squared_minus_part_of_sine_square_a2 = (
-            arm_length_2_squared - (arm_length_1_squared + span_1_z*span_1_z + span_2_x*span_2_x)
-        )
         divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (arm_length_2_squared_minus_part_of_sine_square_a2 + arm_length_1*divisor_a2 - span_2_y*span_2_y)
-            *(arm_length_1*divisor_a2 + span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)
-            /(swing_scale_a2*swing_scale_a2)
+        arm_length_2_minus_root_of_3_times_span_2_x_by_2 = arm_length_2 - 0.5*root(3.0)*span_2_x
+        arm_length_2_plus_root_of_3_times_span_2_x_by_2 = arm_length_2 + 0.5*root(3.0)*span_2_x
+        # square of the third side
+        third_square_a2 = (
+            (arm_length_2_minus_root_of_3_times_span_2_x_by_2 - 0.5*span_2_y)
+            *(arm_length_2_plus_root_of_3_times_span_2_x_by_2 + 0.5*span_2_y)
         )
-        if sine_square_a2 > 0.0:
-            sin_swing_a2 = sqrt(sine_square_a2)
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return 8*(3.0,)
-            sin_swing_a2 = 0.0
-        span_3_y = y - constant_part_4  # rod 3
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
+        # zero where it is the other
+        above_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+            return 8*(3.0,)
+        span_3_y = y - constant_part  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
@@ -144,19 +111,19 @@ def unrolled(k: Constants) -> Unrolled:
             return 8*(3.0,)
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (arm_length_2_squared_minus_part_of_sine_square_a2 + arm_length_1*divisor_a3 - span_3_y*span_3_y)
-            *(arm_length_1*divisor_a3 + span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (arm_length_2_minus_root_of_3_times_span_2_x_by_2 + 0.5*span_3_y)
+            *(arm_length_2_plus_root_of_3_times_span_2_x_by_2 - 0.5*span_3_y)
         )
-        if sine_square_a3 > 0.0:
-            sin_swing_a3 = sqrt(sine_square_a3)
-        else:
-            # a3: out of reach
-            if not (sine_square_a3 >= -1e-12):
-                return 8*(3.0,)
-            sin_swing_a3 = 0.0
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
+        # zero where it is the other
+        above_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        product_a3 = above_a3*below_a3
+        # a3: out of reach
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+            return 8*(3.0,)
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(3.0,)
@@ -166,55 +133,48 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(3.0,)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a2
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
-        pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x_outward = x - pivot_2_x
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
         sin_a2 = -across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
-        # rod 2
-        pivot_2_z = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z_outward = z - pivot_2_z
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        sin_swing_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)/sum_a3
         across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
-        cos_swing_a3 = (span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a3
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
-        pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x_outward = x - pivot_3_x
         along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
         across_a2_times_cos_swing_a3_by_divisor_a3 = across_a2*cos_swing_a3/divisor_a3
         sin_a3 = -across_a2_times_cos_swing_a3_by_divisor_a3 - along_a3_times_sin_swing_a3_by_divisor_a3
-        # rod 3
-        pivot_3_z = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z_outward = z - pivot_3_z
         part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (
-            (arm_length_2_squared - arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared)/swing_scale_a1
-        )
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        pivot_2_y = -constant_part_4 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_outward = y - pivot_2_y
-        pivot_3_y = constant_part_4 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_outward = y - pivot_3_y
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
@@ -229,43 +189,29 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_outward - open_a1 < 179.999999999:
             axis_a1_outward = nearest_period(axis_a1_outward, open_a1)
         cos_a3 = across_a2_times_sin_swing_a3_by_divisor_a3 + along_a3_times_cos_swing_a3_by_divisor_a3
-        pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x_inward = x - pivot_3_x
         sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - across_a2_times_cos_swing_a3_by_divisor_a3
-        # rod 3
-        pivot_3_z = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z_inward = z - pivot_3_z
         part_of_type2_rods_coplanar_outward_inward_outward = (
             rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
         )
-        pivot_3_y = constant_part_4 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_inward = y - pivot_3_y
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
             axis_a3_inward = nearest_period(axis_a3_inward, open_a3)
         cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x_inward = x - pivot_2_x
         sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - across_a2_times_cos_swing_a2_by_divisor_a2
-        # rod 2
-        pivot_2_z = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z_inward = z - pivot_2_z
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
             rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
         )
-        pivot_2_y = -constant_part_4 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
@@ -274,16 +220,9 @@ def unrolled(k: Constants) -> Unrolled:
             rod_2_x_inward*rod_3_z_inward*y - rod_2_z_inward*rod_3_x_inward*y
         )
         if axis_a1_outward >= lowest_a1 and axis_a1_outward <= highest_a1:
-            pivot_1_x = -constant_part - arm_length_1*cos_a1  # rod 1
+            pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
             rod_1_x = x - pivot_1_x
-            # rod 1
-            pivot_1_z = (
-                root(
-                    (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                    + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-                )
-                - arm_length_1*sin_a1
-            )
+            pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
             rod_1_z = z - pivot_1_z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
@@ -356,16 +295,9 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a1_inward - open_a1 < 179.999999999:
             axis_a1_inward = nearest_period(axis_a1_inward, open_a1)
         if axis_a1_inward >= lowest_a1 and axis_a1_inward <= highest_a1:
-            pivot_1_x = -constant_part - arm_length_1*cos_a1  # rod 1
+            pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
             rod_1_x = x - pivot_1_x
-            # rod 1
-            pivot_1_z = (
-                root(
-                    (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                    + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-                )
-                - arm_length_1*sin_a1
-            )
+            pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
             rod_1_z = z - pivot_1_z
             if axis_a2_outward >= lowest_a2 and axis_a2_outward <= highest_a2:
                 # rods_coplanar: the other assembly mode, or too near to losing the plate
@@ -478,71 +410,49 @@ def unrolled(k: Constants) -> Unrolled:
     def branches(frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every slot, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
-        span_1_x = constant_part + x  # rod 1
-        span_1_z_squared = -distance_squared_by_4_minus_stewart_radius_squared
-        # rod 1
-        span_1_z = (
-            z
-            - root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-        )
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1
+        span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return 8*(None,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
-        arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared = (
-            arm_length_1_squared + divisor_a1*divisor_a1 + y*y
-        )
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (
-                arm_length_2_squared + arm_length_1_times_2*divisor_a1
-                - arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared
-            )
-            *(
-                arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared + arm_length_1_times_2*divisor_a1
-                - arm_length_2_squared
-            )
-            /(swing_scale_a1*swing_scale_a1)
-        )
-        if sine_square_a1 > 0.0:
-            sin_swing_a1 = sqrt(sine_square_a1)
-        else:
-            # a1: out of reach
-            if not (sine_square_a1 >= -1e-12):
-                return 8*(None,)
-            sin_swing_a1 = 0.0
-        span_2_x = x - constant_part_3  # rod 2
-        span_2_y = constant_part_4 + y  # rod 2
+        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
+        # zero where it is stretched or folded
+        below_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+        # zero where it is the other
+        above_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        product_a1 = above_a1*below_a1
+        # a1: out of reach
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            return 8*(None,)
+        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
+        span_2_y = constant_part + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
         # a2: its effective length is too short
         if not (effective_a2 > share_of_arm_length_1):
             return 8*(None,)
-        arm_length_2_squared_minus_part_of_sine_square_a2 = (
-            arm_length_2_squared - (arm_length_1_squared + span_1_z*span_1_z + span_2_x*span_2_x)
-        )
         divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (arm_length_2_squared_minus_part_of_sine_square_a2 + arm_length_1*divisor_a2 - span_2_y*span_2_y)
-            *(arm_length_1*divisor_a2 + span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)
-            /(swing_scale_a2*swing_scale_a2)
+        arm_length_2_minus_root_of_3_times_span_2_x_by_2 = arm_length_2 - 0.5*root(3.0)*span_2_x
+        arm_length_2_plus_root_of_3_times_span_2_x_by_2 = arm_length_2 + 0.5*root(3.0)*span_2_x
+        # square of the third side
+        third_square_a2 = (
+            (arm_length_2_minus_root_of_3_times_span_2_x_by_2 - 0.5*span_2_y)
+            *(arm_length_2_plus_root_of_3_times_span_2_x_by_2 + 0.5*span_2_y)
         )
-        if sine_square_a2 > 0.0:
-            sin_swing_a2 = sqrt(sine_square_a2)
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return 8*(None,)
-            sin_swing_a2 = 0.0
-        span_3_y = y - constant_part_4  # rod 3
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
+        # zero where it is the other
+        above_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+            return 8*(None,)
+        span_3_y = y - constant_part  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
@@ -550,19 +460,19 @@ def unrolled(k: Constants) -> Unrolled:
             return 8*(None,)
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (arm_length_2_squared_minus_part_of_sine_square_a2 + arm_length_1*divisor_a3 - span_3_y*span_3_y)
-            *(arm_length_1*divisor_a3 + span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (arm_length_2_minus_root_of_3_times_span_2_x_by_2 + 0.5*span_3_y)
+            *(arm_length_2_plus_root_of_3_times_span_2_x_by_2 - 0.5*span_3_y)
         )
-        if sine_square_a3 > 0.0:
-            sin_swing_a3 = sqrt(sine_square_a3)
-        else:
-            # a3: out of reach
-            if not (sine_square_a3 >= -1e-12):
-                return 8*(None,)
-            sin_swing_a3 = 0.0
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
+        # zero where it is the other
+        above_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        product_a3 = above_a3*below_a3
+        # a3: out of reach
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+            return 8*(None,)
         # ball joint of rod 1
         if not (abs(y)/arm_length_2 <= sin_max_angle_ball_joint):
             return 8*(None,)
@@ -572,66 +482,52 @@ def unrolled(k: Constants) -> Unrolled:
         # ball joint of rod 3
         if not (abs(one_by_2_by_arm_length_2*y - root_of_3_by_2_by_arm_length_2*x) <= sin_max_angle_ball_joint):
             return 8*(None,)
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (span_2_y*span_2_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a2
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
-        pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x_outward = x - pivot_2_x
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
         across_a2_times_cos_swing_a2_by_divisor_a2 = across_a2*cos_swing_a2/divisor_a2
         sin_a2 = -across_a2_times_cos_swing_a2_by_divisor_a2 - along_a2_times_sin_swing_a2_by_divisor_a2
-        # rod 2
-        pivot_2_z = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z_outward = z - pivot_2_z
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        sin_swing_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)/sum_a3
         across_a2_times_sin_swing_a3_by_divisor_a3 = across_a2*sin_swing_a3/divisor_a3
-        cos_swing_a3 = (span_3_y*span_3_y - arm_length_2_squared_minus_part_of_sine_square_a2)/swing_scale_a3
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - across_a2_times_sin_swing_a3_by_divisor_a3
-        pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x_outward = x - pivot_3_x
         along_a3_times_sin_swing_a3_by_divisor_a3 = along_a3*sin_swing_a3/divisor_a3
         across_a2_times_cos_swing_a3_by_divisor_a3 = across_a2*cos_swing_a3/divisor_a3
         sin_a3 = -across_a2_times_cos_swing_a3_by_divisor_a3 - along_a3_times_sin_swing_a3_by_divisor_a3
-        # rod 3
-        pivot_3_z = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z_outward = z - pivot_3_z
         part_of_type2_rods_coplanar = rod_2_x_outward*rod_3_z_outward*y - rod_2_z_outward*rod_3_x_outward*y
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (
-            (arm_length_2_squared - arm_length_1_squared_plus_divisor_a1_squared_plus_y_squared)/swing_scale_a1
-        )
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
         cos_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*cos_swing_a1/divisor_a1
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 - sin_swing_a1_times_span_1_z_by_divisor_a1
-        pivot_1_x = -constant_part - arm_length_1*cos_a1  # rod 1
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        # rod 1
-        pivot_1_z = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        pivot_2_y = -constant_part_4 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_outward = y - pivot_2_y
-        pivot_3_y = constant_part_4 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_outward = y - pivot_3_y
         type2_rods_coplanar = (
             (
@@ -647,22 +543,15 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a2_outward = offset_a2 + arctan2(sin_a2, cos_a2)*RADIAN
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         cos_a3 = across_a2_times_sin_swing_a3_by_divisor_a3 + along_a3_times_cos_swing_a3_by_divisor_a3
-        pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x_inward = x - pivot_3_x
         sin_a3 = along_a3_times_sin_swing_a3_by_divisor_a3 - across_a2_times_cos_swing_a3_by_divisor_a3
-        # rod 3
-        pivot_3_z = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z_inward = z - pivot_3_z
         part_of_type2_rods_coplanar_outward_inward_outward = (
             rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
         )
-        pivot_3_y = constant_part_4 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_inward = y - pivot_3_y
         type2_rods_coplanar = (
             (
@@ -676,22 +565,15 @@ def unrolled(k: Constants) -> Unrolled:
         refusal_outward_outward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3)*RADIAN
         cos_a2 = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
-        pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x_inward = x - pivot_2_x
         sin_a2 = along_a2_times_sin_swing_a2_by_divisor_a2 - across_a2_times_cos_swing_a2_by_divisor_a2
-        # rod 2
-        pivot_2_z = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z_inward = z - pivot_2_z
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
             rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
         )
-        pivot_2_y = -constant_part_4 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         type2_rods_coplanar = (
             (
@@ -718,17 +600,10 @@ def unrolled(k: Constants) -> Unrolled:
         # rods_coplanar: the other assembly mode, or too near to losing the plate
         refusal_outward_inward_inward = 0.0 if type2_rods_coplanar >= min_type2_margin else 3.0
         cos_a1 = cos_swing_a1_times_span_1_x_by_divisor_a1 + sin_swing_a1_times_span_1_z_by_divisor_a1
-        pivot_1_x = -constant_part - arm_length_1*cos_a1  # rod 1
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 - sin_swing_a1_times_span_1_x_by_divisor_a1
-        # rod 1
-        pivot_1_z = (
-            root(
-                (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_1_radius_times_2
-                + (sqrt(span_1_z_squared) if span_1_z_squared > 0.0 else 0.0)*arm_length_1_times_2 - constant_part_2
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
         type2_rods_coplanar = (
             (
@@ -786,44 +661,25 @@ def unrolled(k: Constants) -> Unrolled:
         """One branch, the axes in some turn, of input that is trusted."""
         (x, y, z), _ = frame
         sigma_knee_1, sigma_knee_2, sigma_knee_3 = signs
-        span_1_x = constant_part + x  # rod 1
-        # rod 1
-        span_1_z = (
-            z
-            - root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-        )
+        span_1_x = arm_1_radius_minus_fixed_length_1 + x  # rod 1
+        span_1_z = z - fixed_length_2  # rod 1
         effective_a1 = sqrt(span_1_x*span_1_x + span_1_z*span_1_z)  # effective length that the angle turns
         # a1: its effective length is too short
         if not (effective_a1 > arm_length_1_times_shortest_link):
             return None
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
-        # kept as a product
-        sine_square_a1 = (
-            (
-                arm_length_1_times_2*divisor_a1 - arm_length_1_squared_minus_arm_length_2_squared
-                - divisor_a1*divisor_a1 - y*y
-            )
-            *(
-                arm_length_1_squared_minus_arm_length_2_squared + arm_length_1_times_2*divisor_a1
-                + divisor_a1*divisor_a1 + y*y
-            )
-            /(swing_scale_a1*swing_scale_a1)
-        )
-        if sine_square_a1 > 0.0:
-            sin_swing_a1 = sqrt(sine_square_a1)*sigma_knee_1
-        else:
-            # a1: out of reach
-            if not (sine_square_a1 >= -1e-12):
-                return None
-            sin_swing_a1 = 0.0
-        span_2_x = x - constant_part_3  # rod 2
-        span_2_y = constant_part_4 + y  # rod 2
+        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
+        # zero where it is stretched or folded
+        below_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+        # zero where it is the other
+        above_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        product_a1 = above_a1*below_a1
+        # a1: out of reach
+        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+            return None
+        span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
+        span_2_y = constant_part + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
@@ -832,26 +688,20 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # kept as a product
-        sine_square_a2 = (
-            (
-                arm_length_1_squared_minus_arm_length_2_squared + arm_length_1*divisor_a2 + span_1_z*span_1_z
-                + span_2_x*span_2_x + span_2_y*span_2_y
-            )
-            *(
-                arm_length_1*divisor_a2 - arm_length_1_squared_minus_arm_length_2_squared - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_2_y*span_2_y
-            )
-            /(swing_scale_a2*swing_scale_a2)
+        # square of the third side
+        third_square_a2 = (
+            (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
+            *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
         )
-        if sine_square_a2 > 0.0:
-            sin_swing_a2 = -sqrt(sine_square_a2)*sigma_knee_2
-        else:
-            # a2: out of reach
-            if not (sine_square_a2 >= -1e-12):
-                return None
-            sin_swing_a2 = 0.0
-        span_3_y = y - constant_part_4  # rod 3
+        # zero where it is stretched or folded
+        below_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
+        # zero where it is the other
+        above_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        product_a2 = above_a2*below_a2
+        # a2: out of reach
+        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+            return None
+        span_3_y = y - constant_part  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
@@ -859,88 +709,52 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # kept as a product
-        sine_square_a3 = (
-            (
-                arm_length_1_squared_minus_arm_length_2_squared + arm_length_1*divisor_a3 + span_1_z*span_1_z
-                + span_2_x*span_2_x + span_3_y*span_3_y
-            )
-            *(
-                arm_length_1*divisor_a3 - arm_length_1_squared_minus_arm_length_2_squared - span_1_z*span_1_z
-                - span_2_x*span_2_x - span_3_y*span_3_y
-            )
-            /(swing_scale_a3*swing_scale_a3)
+        # square of the third side
+        third_square_a3 = (
+            (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
+            *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
         )
-        if sine_square_a3 > 0.0:
-            sin_swing_a3 = -sqrt(sine_square_a3)*sigma_knee_3
-        else:
-            # a3: out of reach
-            if not (sine_square_a3 >= -1e-12):
-                return None
-            sin_swing_a3 = 0.0
-        cos_swing_a1 = (-arm_length_1_squared_minus_arm_length_2_squared - divisor_a1*divisor_a1 - y*y)/swing_scale_a1
+        # zero where it is stretched or folded
+        below_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
+        # zero where it is the other
+        above_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        product_a3 = above_a3*below_a3
+        # a3: out of reach
+        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+            return None
+        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
-        pivot_1_x = -constant_part - arm_length_1*cos_a1  # rod 1
+        pivot_1_x = -arm_1_radius_minus_fixed_length_1 - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
-        # rod 1
-        pivot_1_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a1
-        )
+        pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        cos_swing_a2 = (
-            (
-                arm_length_1_squared_minus_arm_length_2_squared + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_2_y*span_2_y
-            )
-            /swing_scale_a2
-        )
+        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
-        pivot_2_x = constant_part_3 + arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = -constant_part_4 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
-        # rod 2
-        pivot_2_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a2
-        )
+        pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        cos_swing_a3 = (
-            (
-                arm_length_1_squared_minus_arm_length_2_squared + span_1_z*span_1_z + span_2_x*span_2_x
-                + span_3_y*span_3_y
-            )
-            /swing_scale_a3
-        )
+        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
+        sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
-        pivot_3_x = constant_part_3 + arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = constant_part_4 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
-        # rod 3
-        pivot_3_z = (
-            root(
-                2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_1_radius
-                + 2.0*root(stewart_radius*stewart_radius - 0.25*distance*distance)*arm_length_1
-                + arm_length_2*arm_length_2 + 0.25*distance*distance - arm_1_radius*arm_1_radius
-                - 2.0*arm_1_radius*arm_length_1 - arm_length_1*arm_length_1 - stewart_radius*stewart_radius
-            )
-            - arm_length_1*sin_a3
-        )
+        pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
         rod_3_z = z - pivot_3_z
         type2_rods_coplanar = (
             assembly_sign_by_constant_part
