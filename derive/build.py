@@ -140,6 +140,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
     constants = {o.name for o in setup_program(mechanism, parameters, ()).outputs}
     lowered, hoisted = hoist((*shared(programs), *programs), constants)
     setup = setup_program(mechanism, parameters, hoisted)
+    settable = setup_program(mechanism, parameters, hoisted, has_settings=True) if mechanism.period_joints else None
     finished = {program.name: program for program in lowered}
     for program in lowered:
         _check_inputs(mechanism, program, {o.name for o in setup.outputs})
@@ -161,6 +162,7 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
         margins=margins,
         freedom=_freedom(mechanism),
         reads_rotation=mechanism.task.turning is not Turning.NONE,
+        setup_less_windows=settable,
         forward_from=finished.get("forward_from"),
         ranked=finished.get("ranked"),
         twist=finished.get("twist"),

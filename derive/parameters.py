@@ -1,4 +1,7 @@
-"""All inputs of a machine, and the setup program that checks them and computes what depends on them alone."""
+"""All inputs of a machine, and the setup program that checks them and computes what depends on them alone.
+
+Where a controller hands over the limits of its drives, `limits_of_axis` narrows those of the machine by them.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,8 @@ import sympy as sp
 
 from derive.legs import MIN_TYPE2_MARGIN as MIN_TYPE2_MARGIN
 from derive.legs import SCALE as SCALE
-from derive.mechanism import Joint, Mechanism, Parameter, Role
-from derive.passes import bare
+from derive.mechanism import Joint, Mechanism, Parameter, Role, rotary
+from derive.passes import bare, renamed
 from derive.platform import machine_constants, machine_statements
 from derive.program import (
     LARGEST,
@@ -25,6 +28,7 @@ from derive.program import (
     Statement,
     Status,
     real,
+    rewritten,
 )
 from derive.verify import verify
 
@@ -85,21 +89,27 @@ def _setting(name: str, meaning: str, unit: str, interval: tuple[float, float] |
     return Parameter(real(name), name, role, meaning, unit, low, high, False, 0.0, 0.0)
 
 
-def setup_program(mechanism: Mechanism, parameters: tuple[Parameter, ...], hoisted: tuple[Let, ...]) -> Program:
-    """Check every parameter; outputs are the parameters themselves, the effective limits, and what was hoisted."""
+def setup_program(
+    mechanism: Mechanism, parameters: tuple[Parameter, ...], hoisted: tuple[Let, ...], *, has_settings: bool = False
+) -> Program:
+    """Check every parameter; outputs are the parameters themselves, the effective limits, and what was hoisted.
+
+    Where drives have settings, what `limits_of_axis` gives is left to it: nothing here may depend on it.
+    """
     body: list[Statement] = [condition for p in parameters for condition in _range_of(p)]
     for constraint in mechanism.constraints:
         body += constraint.steps
         body.append(Require(_inequality(constraint.condition), Status.NOT_INITIALIZED, constraint.message))
     outputs = [Output(p.name, real(p.name)) for p in parameters if not p.name.startswith(("lower_", "upper_"))]
     for joint in mechanism.joints:
-        lets = _limits(joint.key, _fallback(joint))
-        body += [_ordered(joint.key), *lets, *_turn_window(joint)]
+        body += [_ordered(joint.key), *_limits(joint.key, _fallback(joint))]
         outputs += _limit_outputs(joint.key)
-        outputs += [Output(f"{w}_{joint.key}", real(f"{w}_{joint.key}")) for w in ("single", "mid") if joint.multi_turn]
+        if not has_settings:
+            body += [*_widened(joint.key), *_turn_window(joint)]
+            outputs += _window_outputs(joint.key, has_turns=joint.multi_turn)
     for quantity in mechanism.limited:
-        body += [_ordered(quantity.name), *_limits(quantity.name, ())]
-        outputs += _limit_outputs(quantity.name)
+        body += [_ordered(quantity.name), *_limits(quantity.name, ()), *_widened(quantity.name)]
+        outputs += [*_limit_outputs(quantity.name), *_window_outputs(quantity.name, has_turns=False)]
     if mechanism.is_platform:
         body += machine_statements(mechanism)
         outputs += machine_constants(mechanism)
@@ -188,7 +198,7 @@ def _without_limits(joint: Joint) -> str:
 
 def _limits(key: str, fallback: Fallback) -> tuple[Let, ...]:
     lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
-    low, high, unlimited = (real(f"{word}_{key}") for word in ("effective_lower", "effective_upper", "unlimited"))
+    low, high, unlimited = _effective(key)
     open_ended = sp.Le(sp.Abs(lower) + sp.Abs(upper), 0)
     low_value, high_value, free = lower, upper, sp.Integer(1)
     for condition, bottom, top in fallback:
@@ -196,11 +206,23 @@ def _limits(key: str, fallback: Fallback) -> tuple[Let, ...]:
         low_value = Select(given, lower, Select(condition, bottom, sp.Integer(0)) if condition != sp.true else bottom)
         high_value = Select(given, upper, Select(condition, top, sp.Integer(0)) if condition != sp.true else top)
         free = Select(condition, sp.Integer(0), sp.Integer(1)) if condition != sp.true else sp.Integer(0)
-    tolerance = real(f"tolerance_{key}")
     return (
         Let(unlimited, Select(open_ended, free, sp.Integer(0)), f"{key}: no limit"),
         Let(low, low_value),
         Let(high, high_value),
+    )
+
+
+def _effective(key: str) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+    """The names of the lower and the upper limit, and of whether there is none."""
+    return real(f"effective_lower_{key}"), real(f"effective_upper_{key}"), real(f"unlimited_{key}")
+
+
+def _widened(key: str) -> tuple[Let, ...]:
+    """The ends that are tested: the limits and their tolerance."""
+    low, high, unlimited = _effective(key)
+    tolerance = real(f"tolerance_{key}")
+    return (
         Let(tolerance, LIMIT * (1 + sp.Abs(low) + sp.Abs(high))),
         Let(real(f"lowest_{key}"), Select(sp.Gt(unlimited, 0), -UNLIMITED, low - tolerance)),
         Let(real(f"highest_{key}"), Select(sp.Gt(unlimited, 0), UNLIMITED, high + tolerance)),
@@ -211,8 +233,13 @@ def _limit_outputs(key: str) -> list[Output]:
     return [
         Output(f"lower_{key}", real(f"effective_lower_{key}")),
         Output(f"upper_{key}", real(f"effective_upper_{key}")),
-        *(Output(f"{word}_{key}", real(f"{word}_{key}")) for word in ("unlimited", "lowest", "highest")),
+        Output(f"unlimited_{key}", real(f"unlimited_{key}")),
     ]
+
+
+def _window_outputs(key: str, *, has_turns: bool) -> list[Output]:
+    words = ("lowest", "highest", "single", "mid") if has_turns else ("lowest", "highest")
+    return [Output(f"{word}_{key}", real(f"{word}_{key}")) for word in words]
 
 
 def _turn_window(joint: Joint) -> tuple[Let, ...]:
@@ -225,3 +252,42 @@ def _turn_window(joint: Joint) -> tuple[Let, ...]:
         Let(real(f"single_{joint.key}"), Select(one_turn, sp.Integer(1), sp.Integer(0)), "one value inside the limits"),
         Let(real(f"mid_{joint.key}"), (low + high) / 2),
     )
+
+
+def limits_of_axis() -> Program:
+    """The limits of an axis of the machine and those of its drive together, for any axis.
+
+    own_unlimited own_lower own_upper, drive_limited drive_lower drive_upper → lowest highest single middle: both ends with
+    their tolerance, whether one value is inside for every direction, and the middle. A drive that has not been heard of
+    has no limits: `drive_limited` is 0, and its ends are not looked at.
+    """
+    axis = rotary("axis", "any axis")
+    low, high, unlimited = _effective(axis.key)
+    own_unlimited, own_lower, own_upper = (real(f"own_{word}") for word in ("unlimited", "lower", "upper"))
+    drive_limited, drive_lower, drive_upper = (real(f"drive_{word}") for word in ("limited", "lower", "upper"))
+    own_low, own_high = real("own_low"), real("own_high")
+    has_drive = sp.Gt(drive_limited, 0)
+    note = "the lower limit of the drive is above the upper one, or one of them is no number"
+    body: tuple[Statement, ...] = (
+        Require(sp.Or(sp.Le(drive_limited, 0), sp.Le(drive_lower, drive_upper)), Status.BAD_INPUT, note),
+        Let(own_low, Select(sp.Gt(own_unlimited, 0), -LARGEST, own_lower), "no axis value is larger in size"),
+        Let(own_high, Select(sp.Gt(own_unlimited, 0), LARGEST, own_upper)),
+        Let(low, Select(sp.And(has_drive, sp.Gt(drive_lower, own_low)), drive_lower, own_low), "the narrower of both"),
+        Let(high, Select(sp.And(has_drive, sp.Lt(drive_upper, own_high)), drive_upper, own_high)),
+        Require(sp.Le(low, high), Status.NOT_INITIALIZED, "no axis value is inside both limits"),
+        Let(unlimited, Select(has_drive, sp.Integer(0), own_unlimited)),
+        *_widened(axis.key),
+        *_turn_window(axis),
+    )
+    plain = {real(f"{word}_{axis.key}"): real(name) for word, name in _OF_ANY_AXIS.items()}
+    named = tuple(renamed(rewritten(s, lambda e: e.xreplace(plain)), lambda name: plain.get(name, name)) for s in body)
+    outputs = tuple(Output(name, real(name)) for name in ("lowest", "highest", "single", "middle"))
+    inputs = (own_unlimited, own_lower, own_upper, drive_limited, drive_lower, drive_upper)
+    return verify(Program("limits_of_axis", inputs, named, outputs))
+
+
+_OF_ANY_AXIS = {
+    "effective_lower": "lower_end", "effective_upper": "upper_end", "unlimited": "unlimited", "tolerance": "tolerance",
+    "lowest": "lowest", "highest": "highest", "single": "single", "mid": "middle",
+}  # fmt: skip
+"""What the limits of one axis are called where it has no name."""

@@ -17,7 +17,7 @@ from tests.st.library import Library, compile_st
 FILES = {str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st").rglob("*.st"))}
 UNITS = [name for name in FILES if not name.startswith(("softkin/", "selftest/"))]
 CONTRACT = load()
-PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits", "FindPlatform", "EndPointOnFlange"}
+PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits", "FindPlatform", "EndPointOnFlange", "LimitsOfAxis"}
 ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")
 
 # Every piece of text that is no comment, string or pragma.
@@ -145,12 +145,28 @@ def test_names_inside_a_block_are_unique_ignoring_case(file: str) -> None:
 
 
 @pytest.mark.parametrize("file", UNITS)
-def test_only_initialize_writes_the_instance(file: str) -> None:
+def test_only_initialize_and_the_settings_write_the_instance(file: str) -> None:
+    """AxisSettings in its last statements, and nothing but the limits that count; Initialize not what drives have handed over."""
     block = blocks()[file]
     members = {v.name.lower() for s in block.sections for v in s.variables}
     for method in block.methods:
-        if method.name != "Initialize":
-            assert not members & set(_written(method.body)), f"{file}: {method.name}"
+        written = members & set(_written(method.body))
+        if method.name == "AxisSettings":
+            assert all(re.fullmatch(r"(lowest|highest|single|mid|drive(limited|lower|upper)).*", name) for name in written)
+            assert not members & set(_written(method.body[:-2])), file
+            assert isinstance(method.body[-2], ast.Case) and isinstance(method.body[-1], ast.Assign)
+        elif method.name == "Initialize":
+            assert not [name for name in written if name.startswith("drive")], file
+        else:
+            assert not written, f"{file}: {method.name}"
+
+
+@pytest.mark.parametrize("file", UNITS)
+def test_blocks_with_turns_take_the_limits_of_the_drives(file: str) -> None:
+    block = blocks()[file]
+    has_turns = "TRAFO.ISMKinPeriodHandling" in block.implements
+    assert ("TRAFO.ISMKinematicAxisSettings" in block.implements) == has_turns
+    assert ("narrow those of the block" in " ".join(block.comment.split())) == has_turns
 
 
 def _written(body: tuple[ast.Statement, ...]) -> Iterator[str]:

@@ -16,12 +16,17 @@ from derive.emit.st import StructuredTextFiles
 from derive.emit.st_contract import _FILE
 from derive.emit.st_contract import load as contract
 from derive.kinematics import Kinematics
-from tests.execution.controller import OK, Controller
+from tests.execution.controller import OK, UNREACHABLE, Controller
 from tests.st import ast
 from tests.st.library import compile_st
 
 BLOCK = "scara/Kin_Scara4_ZCcoupled_Type1.st"
-LEFT_OUT = ("ISMKinematicWithConfigurations4", "ISMKinPeriodHandling", "ISMKinematicsWithOrientationImage2")
+LEFT_OUT = (
+    "ISMKinematicAxisSettings",
+    "ISMKinematicWithConfigurations4",
+    "ISMKinPeriodHandling",
+    "ISMKinematicsWithOrientationImage2",
+)
 
 
 @lru_cache
@@ -47,12 +52,37 @@ def test_an_older_library_gets_the_predecessors() -> None:
     assert {f"TRAFO.{name}" for name in LEFT_OUT} <= set(current.implements)
     assert [name for name in older.implements if name.removeprefix("TRAFO.") in LEFT_OUT] == []
     assert "TRAFO.ISMKinematicWithConfigurations3" in older.implements
-    assert len(older.implements) == len(current.implements) - 2
+    assert len(older.implements) == len(current.implements) - 3
 
 
 def test_the_methods_of_what_is_left_out_are_left_out() -> None:
     gone = {m.name for m in block(None).methods} - {m.name for m in block("before_4_11").methods}
-    assert gone == {"IsConfigSingular", "GetPeriods", "GetFlangeOrientationImageTotal", "GetFlangeOrientationImageWithOri"}
+    images = {"GetFlangeOrientationImageTotal", "GetFlangeOrientationImageWithOri"}
+    assert gone == {"IsConfigSingular", "GetPeriods", "AxisSettings", "LimitsOfAxis"} | images
+
+
+def test_without_settings_nothing_of_the_drives_is_kept() -> None:
+    """Initialize computes the limits by itself, and nothing else writes them."""
+    assert "rive" not in re.sub(r"\(\*.*?\*\)", "", rendered("before_4_11")[BLOCK], flags=re.DOTALL)
+    assert "AxisSettings" not in rendered("before_4_11")[BLOCK]
+    names = [{v.name for s in block(p).sections for v in s.variables} for p in (None, "before_4_11")]
+    assert names[0] - names[1] == {f"drive{word}A{k}" for word in ("Limited", "Lower", "Upper") for k in (1, 2, 3, 4)}
+    assert names[1] <= names[0]
+
+
+@pytest.mark.parametrize("profile", [None, "before_4_11"])
+def test_limits_of_a_block_alone_are_the_same_with_every_profile(profile: str | None) -> None:
+    """The turn that is inside, and what is beyond."""
+    mechanism = load(MECHANISMS / "kin_scara4_zccoupled_type1.py")
+    machine = Controller(compile_st({n: t for n, t in rendered(profile).items() if n.endswith(".st")}), mechanism)
+    given = {p.name: p.nominal for p in mechanism.parameters} | {"lower_a1": -170.0, "upper_a1": 170.0}
+    axes, beyond, reference = (-160.0, 60.0, 10.0, 20.0), (-175.0, 60.0, 10.0, 20.0), (160.0, 60.0, 10.0, 20.0)
+    for wanted, expected in ((axes, OK), (beyond, UNREACHABLE)):
+        assert machine.initialise(given) == OK
+        position, rotation, data = machine.forward(wanted)[1]
+        status, found = machine.inverse(position, rotation, (data[0], 0, 0, 0), reference)
+        assert status == expected
+        assert status != OK or found[:4] == pytest.approx(wanted)
 
 
 @pytest.mark.parametrize("name", ["kin_scara4_zccoupled_type1", "kin_wrist2", "kin_p2x_type1"])

@@ -10,6 +10,7 @@ from derive.emit.st_expression import literal
 from derive.emit.st_inputs import Input, parameter_input
 from derive.emit.st_names import capitalized, stored_name
 from derive.emit.st_program import Printed
+from derive.emit.st_settings import SETTINGS, Settings, settings_of
 from derive.kinematics import Kinematics
 from derive.mechanism import Joint, Kind
 from derive.parameters import TIE_OF_LENGTHS, chooses_by_lengths
@@ -29,6 +30,7 @@ class Axis:
     upper: str
     output: str
     """The neutral name of the axis value in programs."""
+    settings: Settings
 
 
 @dataclass(frozen=True)
@@ -90,6 +92,8 @@ class Block:
     margins: tuple[str, ...]
     computed: tuple[tuple[str, str], ...]
     """Instance variables that Initialize assigns at its end, with the output of `setup` that each holds."""
+    has_settings: bool
+    """Whether drives hand over their limits."""
 
     def stored(self, program: Printed) -> list[tuple[str, str]]:
         """Instance variables and their values, given the printed `setup`."""
@@ -109,13 +113,14 @@ class Block:
 def block_of(kinematics: Kinematics, contract: Contract) -> Block:
     """The function block of a mechanism."""
     mechanism, spelling = kinematics.mechanism, contract.spelling
+    interfaces = _interfaces(kinematics, contract)
     axis_fields = tuple(spelling["axes"]["fields"])
     size = len(kinematics.branches)
     order = {joint.name: index for index, joint in enumerate(mechanism.joints)}
     return Block(
         name=mechanism.block_name,
         title=mechanism.title or mechanism.block_name,
-        interfaces=_interfaces(kinematics, contract),
+        interfaces=interfaces,
         inputs=tuple(parameter_input(p) for p in kinematics.parameters),
         fields=tuple(stored_name(name) for name in constants(kinematics)),
         axes=tuple(_axis(j, f, contract) for j, f in zip(mechanism.joints, axis_fields, strict=False)),
@@ -131,8 +136,15 @@ def block_of(kinematics: Kinematics, contract: Contract) -> Block:
         refuses_flanges=kinematics.compatible is not None and bool(kinematics.compatible.body),
         rows=kinematics.rows,
         margins=tuple(m.name for m in kinematics.margins),
-        computed=tuple((stored_name(o), o) for o in constants(kinematics) if o not in direct(kinematics).values()),
+        computed=_computed(kinematics, interfaces),
+        has_settings=SETTINGS in interfaces,
     )
+
+
+def _computed(kinematics: Kinematics, interfaces: Sequence[str]) -> tuple[tuple[str, str], ...]:
+    setup = setup_of(kinematics, has_settings=SETTINGS in interfaces)
+    given, bound = {o.name for o in setup.outputs}, set(direct(kinematics, setup).values())
+    return tuple((stored_name(o), o) for o in constants(kinematics) if o in given and o not in bound)
 
 
 def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
@@ -165,12 +177,20 @@ def constants(kinematics: Kinematics) -> tuple[str, ...]:
     return tuple(o.name for o in kinematics.setup.outputs if o.name in read)
 
 
-def direct(kinematics: Kinematics) -> dict[str, str]:
+def setup_of(kinematics: Kinematics, *, has_settings: bool) -> Program:
+    """What Initialize prints: where drives have settings, all but what follows from them."""
+    if not has_settings:
+        return kinematics.setup
+    assert kinematics.setup_less_windows is not None
+    return kinematics.setup_less_windows
+
+
+def direct(kinematics: Kinematics, setup: Program) -> dict[str, str]:
     """Temporaries of `setup` that are constants themselves: their names, and the outputs that hold them."""
-    lets = {let.name.name for let in kinematics.setup.lets()}
+    lets = {let.name.name for let in setup.lets()}
     stored = set(constants(kinematics))
     found: dict[str, str] = {}
-    for output in kinematics.setup.outputs:
+    for output in setup.outputs:
         if output.name in stored and str(output.value) in lets:
             found.setdefault(str(output.value), output.name)
     return found
@@ -180,7 +200,9 @@ def _axis(joint: Joint, field: str, contract: Contract) -> Axis:
     word = "rotary" if joint.kind is Kind.ROTARY else "linear"
     unlimited, lower, upper = (stored_name(f"{w}_{joint.key}") for w in ("unlimited", "lower", "upper"))
     kind = contract.spelling["enumerators"][word]
-    return Axis(joint.name, field, kind, joint.meaning, f"{unlimited} > 0.5", lower, upper, joint.axis.name)
+    return Axis(
+        joint.name, field, kind, joint.meaning, f"{unlimited} > 0.5", lower, upper, joint.axis.name, settings_of(joint)
+    )
 
 
 def _branch_byte(byte: int, name: str, names: tuple[str, str]) -> BranchByte:
@@ -195,7 +217,7 @@ def _interfaces(kinematics: Kinematics, contract: Contract) -> tuple[str, ...]:
     if has_configuration:
         wanted.append("ISMKinematicWithConfigurations4")
     if kinematics.period_joints:
-        wanted.append("ISMKinPeriodHandling")
+        wanted += ["ISMKinPeriodHandling", SETTINGS]
     if kinematics.mechanism.is_orientation:
         wanted += ["ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2"]
     elif kinematics.mechanism.is_position and kinematics.offset_branch is None:

@@ -48,6 +48,10 @@ _AUTOMATIC = (
     "Automatic bytes take the solution nearest to the reference. They are meant for point-to-point movements; "
     "limits refuse a solution, they never choose another one."
 )
+_DRIVES = (
+    "The limits that SoftMotion hands over (AxisSettings) narrow those of the block: what is inside both decides which turn "
+    "of an axis is taken, and what is refused. Where none are handed over, the limits of the block count alone."
+)
 
 
 def description(kinematics: Kinematics, block: Block, picture: str, templates: Environment) -> str:
@@ -65,6 +69,7 @@ def description(kinematics: Kinematics, block: Block, picture: str, templates: E
         parameters=_table(("Parameter", "Unit", "Range", "Meaning"), _parameters(block)),
         refused=wrap(f"{_refused(kinematics)}The parameters are read by Initialize alone.", _WIDTH),
         configuration=list(_configuration(block)),
+        drives=wrap(_DRIVES, _WIDTH) if block.has_settings else [],
         singularities=list(_singularities(kinematics)),
         workspace=list(_workspace(kinematics)),
         costs=list(_costs(costs_of(kinematics), block)),

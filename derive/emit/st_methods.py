@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from jinja2 import Environment
 
 from derive.diagnosis import reasons_of, texts
-from derive.emit.st_block import Block, constants, direct
+from derive.emit.st_block import Block, constants, direct, setup_of
 from derive.emit.st_calls import BranchCall, branch_call
 from derive.emit.st_contract import Contract, Parameter, Signature
 from derive.emit.st_inputs import number_of
@@ -18,13 +18,17 @@ from derive.emit.st_program import Printed, printed
 from derive.emit.st_refusal import MISSING, REASON, TURN, Explained, Refusal
 from derive.emit.st_shared import method_name, own_names, signature_of
 from derive.kinematics import Kinematics
+from derive.parameters import limits_of_axis
 from derive.program import Program, shared
+
+LIMITS_OF_AXIS = limits_of_axis()
 
 _FIRST = (
     "Initialize",
     "IsInitialized",
     "GetKinematicsName",
     "GetAxisProperties",
+    "AxisSettings",
     "AxesToCartesian",
     "CartesianToAxes",
     "AxesToOrientation",
@@ -84,7 +88,7 @@ def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
 def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterator[_Source]:
     known = contract.signatures
     programs = {
-        "Initialize": kinematics.setup,
+        "Initialize": setup_of(kinematics, has_settings=block.has_settings),
         "AxesToCartesian": kinematics.forward,
         "AxesToOrientation": kinematics.orientation,
         "IsSingularity": kinematics.singularity,
@@ -108,6 +112,8 @@ def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterat
             call = branch_call(known["CartesianToAxes"], kinematics.branch, kinematics, block) if name == "Diagnose" else None
             yield _Source(known[name], programs.get(name), call)
             yield from _shared(programs.get(name), kinematics, contract, ready)
+            if name == "Initialize" and block.has_settings:
+                yield _Source(signature_of(LIMITS_OF_AXIS, {}, contract), LIMITS_OF_AXIS, is_shared=True)
             if name == "GetPositionFromOrientation3":
                 yield _Source(_end_point(known[name], contract))
             continue
@@ -178,14 +184,14 @@ def _printed(source: _Source, program: Program, kinematics: Kinematics, block: B
     signature = source.signature
     taken = {i.name for i in block.inputs} | set(block.fields) | {p.name for p in signature.parameters}
     taken |= {"initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes", *contract.signatures}
-    taken |= {method_name(inner) for inner in kinematics.shared}
+    taken |= {method_name(inner) for inner in (*kinematics.shared, LIMITS_OF_AXIS)}
     errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
     refusal = Refusal(signature, errors, error)
     if REASON in {p.name for p in signature.parameters}:
         refusal = Explained(signature, errors, error, reasons_of(kinematics), texts(kinematics))
-    if program is kinematics.setup:
+    if signature.name == "Initialize":
         given = {p.name: number_of(p) for p in kinematics.parameters}
-        stored = {let: stored_name(output) for let, output in direct(kinematics).items()}
+        stored = {let: stored_name(output) for let, output in direct(kinematics, program).items()}
         return printed(program, given, stored, taken, refusal)
     spelled = spelled_inputs(kinematics)
     if source.is_shared:

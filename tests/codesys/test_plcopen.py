@@ -141,13 +141,13 @@ def test_what_the_standard_has_no_element_for() -> None:
     root = parse(ROOT / "scara/Softkin_Scara2_Z.xml")
     pou = _only(root, ".//p:pou[@name='Softkin_Scara2_Z']")
     implemented = [e.text for e in _only(pou, "p:interface//p:Inheritance")]
-    assert "TRAFO.ISMPositionKinematics_Offset2" in implemented and len(implemented) == 5
+    assert "TRAFO.ISMPositionKinematics_Offset2" in implemented and len(implemented) == 6
     pragmas = {e.attrib["Name"]: e.attrib["Value"] for e in _only(pou, "p:interface/p:addData/p:data/p:Attributes")}
     assert pragmas == {"sm_kin_libdoc": "", "sm_kin_axes": "A1, A2, Z"}
     given = _only(pou, "p:interface/p:inputVars/p:variable[@name='dArmLength1']")
     assert [e.attrib["Value"] for e in given.iter("{*}Attribute")] == ["]0 .. +inf[", "u"]
     private = [e.attrib["name"] for e in pou.iter("{*}Method") if e.find(".//{*}AccessModifiers[@Private='true']") is not None]
-    assert private == ["SolveBranch", "TestLimits", "SolveOffsetBranch"]
+    assert private == ["LimitsOfAxis", "SolveBranch", "TestLimits", "SolveOffsetBranch"]
 
 
 def test_an_independent_class_model_reads_it() -> None:

@@ -19,6 +19,7 @@ from tests.coupling.parts import EVERYTHING, ORIENTATIONS, Part, orientation_par
 from tests.execution.closeness import asked
 from tests.execution.controller import OK, Controller
 from tests.execution.samples import tilted
+from tests.execution.settings import together
 from tests.execution.units import compiled
 
 CARRIERS = ("Kin_Gantry2", "Kin_Gantry3", "Kin_Scara2_Z", "Kin_Polar_Z", "Kin_Pos_RRR", "Kin_Tripod_Rotary", "Kin_PCC")
@@ -77,6 +78,47 @@ def test_blocks_combine_as_in_python(carrier: str, wrist: Mechanism, order: str)
             continue
         assert coupling.is_possible()
         _agree(coupling, coupled, first, second)
+
+
+TURNS = (-400.0, -180.0, -20.0, 0.0, 90.0, 200.0)
+"""How far the reference of an axis is from a pose."""
+
+
+@pytest.mark.parametrize("wrist", [m for m in ORIENTATIONS if m.joints], ids=lambda m: m.name)
+@pytest.mark.parametrize("carrier", ("Kin_Scara2_Z", "Kin_Pos_RRR", "Kin_PCC"))
+def test_drives_of_both_parts_decide_the_turns(carrier: str, wrist: Mechanism) -> None:
+    """Each part is handed the limits of its own drives, about its own turn: the answer of two parts with these limits."""
+    first, second = position_part(EVERYTHING[carrier]), orientation_parts(wrist)[0]
+    coupling = Coupling(first, second, "rows")
+    assert coupling.is_possible()
+    rng = np.random.default_rng(53)
+    for one, other in zip(first.draw(POSES, rng).tolist(), second.draw(POSES, rng).tolist(), strict=True):
+        robots = _around(first, coupling.first, one, rng), _around(second, coupling.second, other, rng)
+        coupled = softkin.Coupled(*robots)
+        frame, configuration = coupled.forward([*one, *other])
+        cut = len(robots[0].CONFIGURATION)
+        data = _opened(robots[0], configuration[:cut]), _opened(robots[1], configuration[cut:])
+        reference = np.add([*one, *other], rng.choice(TURNS, len(one) + len(other))).tolist()
+        expected = coupled.inverse(frame, (*data[0], *data[1]), reference)
+        status, found = coupling.inverse(frame, data, (reference[: len(one)], reference[len(one) :]))
+        assert status == OK
+        assert (*found[0][: len(one)], *found[1][: len(other)]) == pytest.approx(expected, abs=1e-8)
+        assert expected == pytest.approx((*one, *other), abs=1e-6)
+
+
+def _around(part: Part, block: Controller, axes: list[float], rng: np.random.Generator) -> softkin.Mechanism:
+    """Drives of less than a turn about axis values: handed over to the block, and as a machine in Python."""
+    middles = [value + rng.uniform(-20.0, 20.0) for value in axes]
+    drives = [(m - 160.0, m + 160.0) if j.is_angle else None for j, m in zip(part.mechanism.joints, middles, strict=True)]
+    assert [block.axis_settings(axis, drive) for axis, drive in enumerate(drives)] == [OK] * len(axes)
+    both = together(part.mechanism, part.robot.parameters, drives)
+    assert both is not None
+    return type(part.robot)(**both)
+
+
+def _opened(robot: softkin.Mechanism, data: Any) -> tuple[int, ...]:
+    """The branches of a configuration, and open turns."""
+    return (*data[: robot.BRANCHES], *(0,) * len(robot.PERIOD_AXES))
 
 
 @pytest.mark.parametrize(("name", "freedom"), [("Kin_5Axes", "one"), ("Kin_ArticulatedRobot_6DOF", "zero")])

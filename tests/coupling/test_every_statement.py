@@ -7,7 +7,7 @@ import pytest
 from derive.mechanism import Mechanism
 from tests.coupling import test_structured_text as tried
 from tests.coupling.blocks import ORIENTATIONS, Carried, twins_of
-from tests.execution import test_configuration_blocks, test_initialise, values
+from tests.execution import test_axis_settings, test_configuration_blocks, test_initialise, values
 from tests.execution.controller import NOT_INITIALIZED
 from tests.execution.other_turns import check_other_turns
 from tests.execution.reasons import provoke
@@ -33,6 +33,7 @@ def test_every_statement_runs(mechanism: Mechanism) -> None:
                     tried.COMPARISONS[method](one, sample)
             _limits_and_garbage(one)
         _before_initialize(mechanism)
+        test_axis_settings.every_statement_of_the_settings(mechanism)
         tried.test_the_number_of_axes(mechanism)
         tried.test_a_tool_that_points_the_opposite_way(mechanism)
         tried.test_garbage_and_no_initialisation(mechanism)

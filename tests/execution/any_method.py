@@ -9,6 +9,7 @@ from typing import Any
 from tests.execution import values
 from tests.execution.controller import OK, Controller
 from tests.execution.samples import Sample
+from tests.execution.settings import settings
 from tests.execution.twins import Twins
 from tests.st.instance import Entry
 
@@ -85,5 +86,6 @@ def _fitting(twins: Twins, sample: Sample) -> dict[str, Any]:
         "cd1": configuration,
         "cd2": configuration,
         "cdSrc": configuration,
+        "as": settings(library, None),
         "udiAxis": 0,
     }

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+import numpy as np
+
 from derive.mechanism import Joint, Kind, Turning
 from derive.splits import is_spatial
 from tests.execution.closeness import asked, assert_same, is_close
 from tests.execution.controller import NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller
 from tests.execution.reasons import compare_reason
 from tests.execution.samples import HALF_TURN, NO_TURN, Bytes, Command, Sample, commands
+from tests.execution.settings import Range, own_limits, together
 from tests.execution.twins import Twins
-from tests.execution.values import PROPERTIES_TYPE, meaningless
 
 Comparison = Callable[[Twins, Sample], None]
 ROUNDING = 1e-11
@@ -54,10 +56,7 @@ def name(twins: Twins, sample: Sample) -> None:
 def axis_properties(twins: Twins, sample: Sample) -> None:
     """Types as declared, and the limits that the block keeps; beyond the axes a free linear one."""
     for index in (*range(6), 255, 2**32 - 1):
-        properties = meaningless(twins.library, PROPERTIES_TYPE)
-        twins.controller.block.call("GetAxisProperties", props=properties, udiAxis=index)
-        limits = properties.limits
-        found = properties.eType, limits.xUnlimited, limits.dLower, limits.dUpper
+        found = twins.controller.axis_properties(index)
         if index < len(twins.mechanism.joints):
             assert_same(found, _properties(twins, twins.mechanism.joints[index]), twins, index)
         else:
@@ -66,17 +65,38 @@ def axis_properties(twins: Twins, sample: Sample) -> None:
 
 def _properties(twins: Twins, joint: Joint) -> tuple[str, bool, float, float]:
     kind = "Rotary" if joint.kind is Kind.ROTARY else "Linear"
-    parameters = twins.robot.parameters
-    lower, upper = parameters[f"lower_{joint.key}"], parameters[f"upper_{joint.key}"]
-    if (lower, upper) != (0.0, 0.0):
-        return kind, False, lower, upper
-    if joint.domain is not None:
-        low, high = (end + parameters[joint.offset.name] for end in joint.domain)
-        return kind, False, low, high
-    values = {p.symbol: parameters[p.name] for p in twins.mechanism.parameters}
-    if joint.limit_range is not None and joint.pitch.xreplace(values) != 0:
-        return kind, False, *joint.limit_range
-    return kind, True, 0.0, 0.0
+    own = own_limits(twins.mechanism, twins.robot.parameters, joint)
+    return (kind, True, 0.0, 0.0) if own is None else (kind, False, *own)
+
+
+def axis_settings(twins: Twins, sample: Sample) -> None:
+    """Limits of all drives around a pose narrow those of the machine: the machine with both answers the same in Python."""
+    rng = np.random.default_rng(list(sample.data) or 5)
+    controller = Controller(twins.library, twins.mechanism)
+    drives = [drive_around(value, joint, rng) for value, joint in zip(sample.axes, twins.mechanism.joints, strict=True)]
+    both = together(twins.mechanism, twins.robot.parameters, drives)
+    statuses = [controller.axis_settings(index, drive) for index, drive in enumerate(drives)]
+    assert set(statuses) == {OK}
+    assert controller.initialise(twins.robot.parameters) == (NOT_INITIALIZED if both is None else OK)
+    if both is None:
+        return
+    robot = type(twins.robot)(**both)
+    for command in commands(twins.machine, sample):
+        frame = command.position, command.rotation
+        status, answer = asked(robot.inverse, frame, command.configuration, command.reference)
+        expected = answer + (0.0,) * (6 - len(answer)) if status == OK else None
+        found = controller.inverse(*frame, command.configuration, command.reference)
+        assert_same(found, (status, expected), twins, drives, command)
+
+
+def drive_around(value: float, joint: Joint, rng: np.random.Generator) -> Range:
+    """Limits of a drive, of less or more than a turn, about a value as far as the machine could have them; or none."""
+    if rng.uniform() < 0.3:
+        return None
+    low, high = joint.limit_range or (-1e9, 1e9)
+    below, above = rng.choice((5.0, 100.0, 170.0, 300.0), 2)
+    inside = min(max(value, low + 5.0), high - 5.0)
+    return max(low, inside - below), min(high, inside + above)
 
 
 def forward(twins: Twins, sample: Sample) -> None:
@@ -260,6 +280,7 @@ COMPARISONS: dict[str, Comparison] = {
     "IsInitialized": initialize,
     "GetKinematicsName": name,
     "GetAxisProperties": axis_properties,
+    "AxisSettings": axis_settings,
     "AxesToCartesian": forward,
     "CartesianToAxes": inverse,
     "AxesToOrientation": orientation,
@@ -285,6 +306,7 @@ POSELESS = {
     "IsInitialized",
     "GetKinematicsName",
     "GetAxisProperties",
+    "AxisSettings",
     "GetOrientationImage",
     "GetFlangeOrientationImageTotal",
     "GetConfigurationDataSize",

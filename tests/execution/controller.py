@@ -9,6 +9,7 @@ from derive.emit.st_names import input_name
 from derive.mechanism import Mechanism, Parameter, Role
 from derive.parameters import machine_parameters
 from tests.execution import values
+from tests.execution.settings import Range, settings
 from tests.execution.values import Numbers
 from tests.st.library import Library
 
@@ -44,6 +45,23 @@ class Controller:
         self.set_inputs(given)
         status: str = self.block.call("Initialize")
         return status
+
+    def axis_settings(self, axis: int, limits: Range) -> str:
+        """AxisSettings: the limits of the drive of an axis."""
+        status: str = self.block.call("AxisSettings", **{"as": settings(self.library, limits), "udiAxis": axis})
+        return status
+
+    def axis_properties(self, axis: int) -> tuple[str, bool, float, float]:
+        """GetAxisProperties: its type, and the limits."""
+        found = self._new(values.PROPERTIES_TYPE)
+        self.block.call("GetAxisProperties", props=found, udiAxis=axis)
+        return found.eType, found.limits.xUnlimited, found.limits.dLower, found.limits.dUpper
+
+    def state(self) -> dict[str, object]:
+        """All instance variables, without the inputs."""
+        sections = self.library.objects[self.mechanism.block_name].sections
+        names = [v.name for s in sections if s.scope == "VAR" for v in s.variables]
+        return {name: getattr(self.block, name) for name in names}
 
     def forward(self, axes: Numbers) -> Answer:
         """AxesToCartesian: position, rotation, all configuration bytes."""

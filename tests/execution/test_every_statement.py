@@ -10,6 +10,7 @@ import softkin
 from derive.emit.st_names import capitalized
 from derive.mechanism import Mechanism
 from tests.execution import (
+    test_axis_settings,
     test_blocks_alone,
     test_configuration_blocks,
     test_garbage,
@@ -109,6 +110,7 @@ def run_the_tests(mechanism: Mechanism, twins: tuple[Twins, ...]) -> None:
     test_initialise.test_a_configuration_that_is_too_small_is_refused(mechanism)
     test_limits.test_every_limit_refuses_alone(twins)
     test_limits.test_a_turn_that_refuses_is_told_with_the_one_inside(twins)
+    test_axis_settings.every_statement_of_the_settings(mechanism)
     test_garbage.test_garbage_in_one_number(twins)
     test_garbage.test_a_pose_that_cannot_be_assembled(twins)
     test_garbage.test_what_is_no_rotation(twins)

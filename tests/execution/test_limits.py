@@ -8,7 +8,6 @@ from tests.execution.controller import OK, UNREACHABLE, Controller
 from tests.execution.other_turns import check_other_turns
 from tests.execution.samples import Sample
 from tests.execution.twins import Twins
-from tests.execution.values import PROPERTIES_TYPE, meaningless
 
 WIDTH = 1.0
 """How far the limit on the other side is."""
@@ -51,10 +50,7 @@ def test_small_limits_are_limits(twins: tuple[Twins, ...]) -> None:
             controller = Controller(one.library, one.mechanism)
             limits = {f"lower_{joint.key}": lower, f"upper_{joint.key}": upper}
             assert controller.initialise({**one.robot.parameters, **limits}) == OK
-            properties = meaningless(one.library, PROPERTIES_TYPE)
-            controller.block.call("GetAxisProperties", props=properties, udiAxis=index)
-            found = properties.limits.xUnlimited, properties.limits.dLower, properties.limits.dUpper
-            assert found == (False, lower, upper)
+            assert controller.axis_properties(index)[1:] == (False, lower, upper)
 
 
 def limited_value(one: Twins, sample: Sample, name: str) -> float | None:

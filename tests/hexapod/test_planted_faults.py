@@ -76,7 +76,7 @@ def test_a_wrong_text_is_noticed(name: str) -> None:
 
 def test_a_memory_is_refused() -> None:
     """A search that keeps where it ended for the next call cannot even be compiled."""
-    with pytest.raises(StError, match="only Initialize may write"):
+    with pytest.raises(StError, match="only Initialize and AxisSettings may write"):
         compiled_text(file_of(MECHANISM), text_with(Fault(_SEARCH, "x := x + xRate/stretch;", "homeX := x;")))
 
 

@@ -7,7 +7,14 @@ from itertools import product
 import pytest
 
 from derive.mechanism import Mechanism
-from tests.execution import test_blocks_alone, test_configuration_blocks, test_garbage, test_initialise, test_not_initialised
+from tests.execution import (
+    test_axis_settings,
+    test_blocks_alone,
+    test_configuration_blocks,
+    test_garbage,
+    test_initialise,
+    test_not_initialised,
+)
 from tests.execution.closeness import asked, assert_same
 from tests.execution.controller import NOT_INITIALIZED, Controller
 from tests.execution.other_turns import check_other_turns
@@ -67,6 +74,7 @@ def run_the_tests(mechanism: Mechanism, loops: tuple[Loop, ...]) -> None:
     test_branches.test_a_byte_without_a_meaning_is_refused(loops[:1])
     test_refusals.test_every_limit_refuses_alone(loops)
     check_other_turns(loops[1], loops[1].regular[0])
+    test_axis_settings.every_statement_of_the_settings(mechanism)
     for name, given, changes, _ in IMPOSSIBLE.values():
         if name == mechanism.name:
             assert Controller(loops[0].library, mechanism).initialise(given | changes) == NOT_INITIALIZED

@@ -1,9 +1,12 @@
-"""Who may write what: constants, inputs, and the rule that only Initialize changes an instance."""
+"""Who may write what: constants, inputs, and the rule that only Initialize and AxisSettings change an instance."""
 
 from . import ast
 from . import st_types as types
 from .facts import Facts, Scope
 from .faults import StError
+
+WRITERS = ("Initialize", "AxisSettings")
+"""The methods that may change an instance: all others are called by several tasks at once."""
 
 
 def root(node: ast.Expression, facts: Facts) -> types.Variable | None:
@@ -63,8 +66,8 @@ def _check_foreign(node: ast.Expression, facts: Facts) -> None:
 def _check_member(variable: types.Variable, node: ast.Expression, scope: Scope) -> None:
     if scope.is_method and variable.scope == "VAR_INPUT":
         raise StError(node.at, f"a method writes the input {variable.name}")
-    if scope.is_method and scope.owner.lower() != "initialize":
-        raise StError(node.at, f"only Initialize may write the instance variable {variable.name}")
+    if scope.is_method and scope.owner.lower() not in map(str.lower, WRITERS):
+        raise StError(node.at, f"only {' and '.join(WRITERS)} may write the instance variable {variable.name}")
     block = scope.block
     if not scope.is_method and block is not None and block.methods and block.declaration.kind != "PROGRAM":
         raise StError(node.at, f"the body of a block with methods writes {variable.name}")
