@@ -165,19 +165,31 @@ def _moved(statements: Sequence[Statement], measure: Measure, condition: _Condit
 
 def _motion(measure: Measure, condition: _Condition) -> tuple[Let, ...]:
     """Where the angle moves, in terms of where it was."""
-    word, cos_u, sin_u = condition.word, cosine(measure.angle), sine(measure.angle)
-    value, along, across, swing, level, size = (
-        real(f"{name}_{word}") for name in ("value", "along", "across", "swing", "level", "size")
-    )
-    divisor, highest, lowest, near, far = (real(f"{name}_{word}") for name in ("divisor", "highest", "lowest", "near", "far"))
-    centre, before, side, moved = (real(f"{name}_{word}") for name in ("centre", "angle", "side", "moved"))
-    turns = sp.Gt(swing, ROUNDING * size)
-    one = sp.Integer(1)
+    word = condition.word
+    value, size = (real(f"{name}_{word}") for name in ("value", "size"))
     lets, total, slopes = _parts(condition)
     return (
         *lets,
         Let(value, total, f"a later step needs this of {measure.angle.name}: no larger in size than"),
         Let(size, sp.Abs(condition.size)),
+        *nearest_on_arc(word, value, size, slopes, (cosine(measure.angle), sine(measure.angle))),
+    )
+
+
+def nearest_on_arc(
+    word: str, value: sp.Expr, size: sp.Expr, slopes: tuple[sp.Expr, sp.Expr], angle: tuple[sp.Expr, sp.Expr]
+) -> tuple[Let, ...]:
+    """`moved_<word>`: the u nearest to where it was at which a value is no larger in size; on its side of the arc's centre.
+
+    slopes: of the value by cos u and sin u. angle: the cosine and sine of u where it was, and where the value is `value`.
+    """
+    cos_u, sin_u = angle
+    along, across, swing, level = (real(f"{name}_{word}") for name in ("along", "across", "swing", "level"))
+    divisor, highest, lowest, near, far = (real(f"{name}_{word}") for name in ("divisor", "highest", "lowest", "near", "far"))
+    centre, before, side, moved = (real(f"{name}_{word}") for name in ("centre", "angle", "side", "moved"))
+    turns = sp.Gt(swing, ROUNDING * size)
+    one = sp.Integer(1)
+    return (
         Let(along, slopes[0]),
         Let(across, slopes[1]),
         Let(swing, Root(along**2 + across**2)),

@@ -164,7 +164,7 @@ def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward)
     dropped = solved | own | {s.name for s in naming if isinstance(s, Let)} | trigonometric.keys()
     kept = [
         s
-        for s in (*inverse.closure.lets, *inverse.derivation.statements)
+        for s in (*inverse.closure.lets, *inverse.derivation.plain)
         if isinstance(s, Let) and s.name not in dropped
     ]
     present = {s.name for s in forward.statements if isinstance(s, Let)}

@@ -105,4 +105,5 @@ class Ledger:
 
 def _renamed(slope: Slope, names: Mapping[sp.Symbol, sp.Expr]) -> Slope:
     reach = None if slope.reach is None else (slope.reach[0].xreplace(names), slope.reach[1].xreplace(names))
-    return replace(slope, value=slope.value.xreplace(names), reach=reach)
+    legs = None if slope.legs is None else slope.legs.renamed(names)
+    return replace(slope, value=slope.value.xreplace(names), reach=reach, legs=legs)

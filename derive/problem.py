@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import sympy as sp
 
@@ -26,6 +26,27 @@ class Equation:
 
 
 @dataclass(frozen=True)
+class Legs:
+    """The triangle of a two-root step that aims u at a point.
+
+    along cos u + across sin u = beside, along sin u - across cos u = root, and root² + beside² = distance².
+    """
+
+    root: sp.Symbol
+    """sigma times a root."""
+    square: sp.Expr
+    """What the root is taken of."""
+    beside: sp.Expr
+    distance: sp.Expr
+    along: sp.Expr
+    across: sp.Expr
+
+    def renamed(self, names: Mapping[sp.Symbol, sp.Expr]) -> Legs:
+        """The same with other names."""
+        return Legs(*(getattr(self, f.name).xreplace(names) for f in fields(self)))
+
+
+@dataclass(frozen=True)
 class Slope:
     """The derivative of a two-root step by its unknown, over a scale of parameters: its sign is the branch."""
 
@@ -34,7 +55,9 @@ class Slope:
     """Equals sigma times something not negative at every solution."""
     scale: sp.Expr
     reach: tuple[sp.Expr, sp.Expr] | None = None
-    """(h, e) where the step has solutions for |e| <= h, for partial steps before it."""
+    """(h, e) where the step has solutions for |e| <= h, for steps before it."""
+    legs: Legs | None = None
+    """Where the root, near zero, multiplies what rounding leaves of its radicand, for steps behind it."""
 
 
 @dataclass(frozen=True)

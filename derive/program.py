@@ -32,8 +32,12 @@ OUT_OF_REACH = sp.Float("1e-9")
 """What is beyond its bound by more than this share is not reached by moving an angle that is known."""
 BOUNDARY = sp.Float("1e-12")
 """A normalised radicand negative by at most this is zero: the boundary belongs to the workspace."""
+FOLD = sp.Float("1e-6")
+"""A radicand below this share of the machine's squared length is near enough to zero for its root to multiply rounding."""
 ROUNDING = sp.Float("1e-12")
 """A motion of the pose smaller than this share of the machine is rounding."""
+INSIDE = sp.Float("1e-7")
+"""An angle that is moved to where a later step reaches is moved inside of its boundary by this share, where that is free."""
 LARGEST = sp.Integer(10) ** 9
 """Inputs larger in size than this are refused."""
 ROTATION = sp.Float("1e-4")

@@ -12,6 +12,7 @@ import sympy as sp
 
 from derive.arcs import within_reach
 from derive.consequences import differences, eliminations, squares, squares_of_three
+from derive.folds import beyond_folds
 from derive.ledger import Ledger
 from derive.parallel import Sum, candidate_sums, resolve, substitute
 from derive.problem import Binding, Equation, Measure, Problem, Slope
@@ -52,6 +53,8 @@ class Derivation:
     sums: tuple[Sum, ...] = ()
     residuals: tuple[sp.Expr, ...] = ()
     """What vanishes if the equations agree with each other: identically, where none was left over."""
+    plain: tuple[Statement, ...] = ()
+    """The statements without what keeps roots and free angles where later steps reach: what their names mean."""
 
 
 def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:
@@ -73,8 +76,9 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
             if angle not in problem.lengths:
                 ledger.append(resolve_angle(angle))
         problem = _without(problem, binding, ledger)
-    statements = within_reach(ledger.statements, ledger.slopes, ledger.measures)
-    return Derivation(statements, ledger.slopes, ledger.measures, tuple(rules), sums, ledger.residuals)
+    unfolded = beyond_folds(ledger.statements, ledger.slopes, ledger.measures, problem.scale)
+    statements = within_reach(unfolded, ledger.slopes, ledger.measures)
+    return Derivation(statements, ledger.slopes, ledger.measures, tuple(rules), sums, ledger.residuals, ledger.statements)
 
 
 def _next(

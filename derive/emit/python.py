@@ -17,7 +17,7 @@ from derive.emit.python_methods import branch, carried, forwards, limits, method
 from derive.emit.python_printer import ARRAY_NAMES, array_helpers_in, literal, primitives_in
 from derive.emit.python_program import Method, array_body, functions, has_loop, scalar_body
 from derive.emit.python_rotation import rotation_functions
-from derive.emit.python_unrolled import array_lines, array_method, can_be_unrolled, unrolled
+from derive.emit.python_unrolled import array_lines, array_method, can_be_unrolled, has_folds, unrolled
 from derive.kinematics import Kinematics
 from derive.parameters import chooses_by_lengths
 from derive.program import (
@@ -154,6 +154,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "primitives": primitives_in(line for body in (*bodies, setup.setup_body(kin)) for line in body),
         "is_unrolled": can_be_unrolled(kin),
         "chooses_by_lengths": chooses_by_lengths(kin.mechanism),
+        "has_folds": has_folds(kin),
         "margins": tuple(m.name for m in kin.margins),
         "methods": [{"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)],
     }

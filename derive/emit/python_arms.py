@@ -35,7 +35,7 @@ def array_arm_lines(
         declared = [f"{name}: Real" for name in results]
         return [*declared, *fold(f"if {condition}:"), *_indented(holds), "else:", *_indented(fails)]
     given = sorted(spelled(s.name) for s in _read(arms.fails) - set(constants))
-    function, answer = f"elsewhere_{results[0]}", tuple_of(results)
+    function, answer = _unused(f"elsewhere_{results[0]}", holds), tuple_of(results)
     return [
         "",
         *fold(f"def {function}({', '.join(f'{name}: Real' for name in given)}) -> Reals:"),
@@ -44,6 +44,15 @@ def array_arm_lines(
         *holds,
         *_assigned(results, f"elsewhere({condition}, {answer}, {function}, {tuple_of(given)})"),
     ]
+
+
+def _unused(function: str, holds: Sequence[str]) -> str:
+    """A name that no choice on the first side has: it would take the place of this one before it is called."""
+    number, found = 1, function
+    while any(line.startswith(f"def {found}(") for line in holds):
+        number += 1
+        found = f"{function}_{number}"
+    return found
 
 
 def _assigned(names: list[str], value: str) -> list[str]:

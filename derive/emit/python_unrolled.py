@@ -29,6 +29,7 @@ from derive.emit.python_program import (
 )
 from derive.emit.read_once import written_where_read
 from derive.emit.reused_names import reused_names
+from derive.folds import far_from_folds
 from derive.kinematics import Kinematics
 from derive.opposites import with_fewer_signs, without_minus
 from derive.program import Let, Program, Status, real, symbols_of
@@ -134,7 +135,8 @@ def _constants(kin: Kinematics) -> frozenset[str]:
 
 
 def unrolled(kin: Kinematics) -> Unrolled:
-    """The functions on plain numbers."""
+    """The functions on plain numbers. Near a fold they have no answer, an empty tuple: one branch after the other has."""
+    kin = replace(kin, branch=far_from_folds(kin.branch))
     methods, parts = _with_constant_parts(kin, _methods(kin))
     known = (*kin.setup.lets(), *parts)
     functions = (_slots(kin, methods[0], known), _directions(kin, methods[1], known), _direction(kin, methods[2], known, parts))
@@ -175,16 +177,26 @@ def _methods(kin: Kinematics) -> tuple[Method, Method, Method]:
     )  # fmt: skip
 
 
+def has_folds(kin: Kinematics) -> bool:
+    """Whether the functions on plain numbers have no answer near a fold."""
+    return can_be_unrolled(kin) and far_from_folds(kin.branch) is not kin.branch
+
+
+def _refusals(answer: Callable[[Status], str]) -> Refusals:
+    """As the answer says, and nothing near a fold."""
+    return Refusals(lambda status: "()" if status is Status.OK else answer(status))
+
+
 def _slots(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
     """The checked function."""
     count = 2 ** len(kin.branches)
-    refusals = Refusals(lambda status: repeated(f"{list(Status).index(status)}.0", count))
+    refusals = _refusals(lambda status: repeated(f"{list(Status).index(status)}.0", count))
     written = _Written.of(method, known)
     return written.function(_every(kin, written, refusals, _SCALAR, lambda refusal: refusal))
 
 
 def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Function:
-    refusals = Refusals(lambda _: repeated("None", 2 ** len(kin.branches)))
+    refusals = _refusals(lambda _: repeated("None", 2 ** len(kin.branches)))
     written = _Written.of(method, known)
     return written.function(_every(kin, written, refusals, _DIRECTIONS, lambda _: "None"))
 
@@ -192,7 +204,7 @@ def _directions(kin: Kinematics, method: Method, known: Sequence[Let]) -> Functi
 def _direction(kin: Kinematics, method: Method, known: Sequence[Let], parts: Sequence[Let]) -> Function:
     """One branch; its return once more without the offsets, read by it or in its parts, where all of them are zero."""
     written = _Written.of(method, known)
-    lines = item_lines(written.items, Refusals(lambda _: "None"), _DIRECTIONS)
+    lines = item_lines(written.items, _refusals(lambda _: "None"), _DIRECTIONS)
     zero = {joint.offset: sp.Integer(0) for joint in kin.mechanism.joints}
     zero |= {let.name: value for let in parts for value in [let.value.xreplace(zero)] if value.is_number}
     values, without = list(written.values.values()), [value.xreplace(zero) for value in written.values.values()]

@@ -8,15 +8,18 @@ no h is left: nothing can be reached unless e vanishes too, and then u is free. 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import sympy as sp
 
 from derive.algebra import cosine, sine
-from derive.problem import Binding, Equation, Measure, Problem, Slope
+from derive.problem import Binding, Equation, Legs, Measure, Problem, Slope
 from derive.program import BOUNDARY, FREE_ANGLE, Let, Require, Root, Select, Statement, Status, real
 from derive.subproblems.direction import direction, free_angle
 from derive.subproblems.naming import Naming
 
 Row = tuple[sp.Expr, sp.Expr, sp.Expr]
+_AHEAD = "how far ahead of the axis the point is; negative: behind"
 
 
 def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: Row) -> Binding:
@@ -32,11 +35,14 @@ def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: 
     if e == 0:
         one_way = _only_way(problem, slope.value)
         way = sigma if one_way is None else one_way
+        ahead = Let(real(f"ahead_{angle.name}"), way * distance, _AHEAD)
         known = direction(
             problem, angle, along=-way * across, across=way * along, measure=distance, note=note, is_length=True
         )
         measure = Measure(angle, distance, problem.scale)
-        return Binding("lateral", (angle,), (*naming.lets, *known), slope if one_way is None else None, measure)
+        legs = Legs(ahead.name, distance**2, sp.Integer(0), distance, along, across)
+        with_legs = replace(slope, legs=legs) if one_way is None else None
+        return Binding("lateral", (angle,), (*naming.lets, ahead, *known), with_legs, measure)
     beside = naming.named(e, f"beside_{angle.name}", "how far beside the arm the point is")
     return _beside(problem, angle, naming, (along, across, beside, distance), slope, note)
 
@@ -71,9 +77,10 @@ def _beside(
         Let(rounding, BOUNDARY * shortest**2, "what rounding may leave of a square of lengths"),
         Let(square, (distance - beside) * (distance + beside), note),
         Require(sp.Ge(square, -BOUNDARY * distance**2 - rounding), Status.UNREACHABLE, f"{angle.name}: out of reach"),
-        Let(ahead, slope.sigma * Root(square), "how far ahead of the axis the point is; negative: behind"),
+        Let(ahead, slope.sigma * Root(square), _AHEAD),
         Let(divisor, Select(determined, distance**2, sp.Integer(1))),
         Let(cosine(angle), Select(determined, cos_value, cos_free), "its reference where it is free"),
         Let(sine(angle), Select(determined, sin_value, sin_free)),
     )
-    return Binding("lateral", (angle,), statements, slope, cosine_alone=True)
+    legs = Legs(ahead, square, beside, distance, along, across)
+    return Binding("lateral", (angle,), statements, replace(slope, legs=legs), cosine_alone=True)

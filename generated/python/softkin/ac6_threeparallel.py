@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 184 additions, 182 multiplications, 44 divisions, 11 square roots, 18 sines
-    inverse, all 8 branches open: 1241 additions, 1141 multiplications, 289 divisions, 74 square roots, 144 sines
+    inverse: 263 additions, 351 multiplications, 70 divisions, 18 square roots, 28 sines
+    inverse, all 8 branches open: 1873 additions, 2493 multiplications, 497 divisions, 130 square roots, 224 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -115,7 +115,7 @@ class Constants(NamedTuple):
     machine_scale: float
     rounding_q1: float
     scale_q3: float
-    size_q6_of_q3: float
+    size_q1_for_q3: float
 
 
 class Ac6ThreeParallel(Mechanism):
@@ -456,7 +456,7 @@ class Ac6ThreeParallel(Mechanism):
         machine_scale = abs(a2) + abs(a3)  # a length of the machine
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
         scale_q3 = 2.0*a2*a3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
-        size_q6_of_q3 = 2.0*abs(a2*a3)
+        size_q1_for_q3 = 2.0*abs(a2*a3)
         return Constants(
             d1=d1, a2=a2, a3=a3, d4=d4, d5=d5, d6=d6, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
             offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6, check_limits=check_limits,
@@ -470,7 +470,7 @@ class Ac6ThreeParallel(Mechanism):
             upper_a5=effective_upper_a5, unlimited_a5=unlimited_a5, lowest_a5=lowest_a5, highest_a5=highest_a5,
             single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6, upper_a6=effective_upper_a6,
             unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6, single_a6=single_a6, mid_a6=mid_a6,
-            machine_scale=machine_scale, rounding_q1=rounding_q1, scale_q3=scale_q3, size_q6_of_q3=size_q6_of_q3,
+            machine_scale=machine_scale, rounding_q1=rounding_q1, scale_q3=scale_q3, size_q1_for_q3=size_q1_for_q3,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -647,7 +647,7 @@ class Ac6ThreeParallel(Mechanism):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
-        size_q6_of_q3 = k.size_q6_of_q3
+        size_q1_for_q3 = k.size_q1_for_q3
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -662,17 +662,255 @@ class Ac6ThreeParallel(Mechanism):
         # q1: out of reach
         if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
             return Status.UNREACHABLE
+        # how far ahead of the axis the point is; negative: behind
+        ahead_q1_before_q1_for_q3 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_shoulder
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            # how far ahead of the axis the point is; negative: behind
-            ahead_q1 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_shoulder
             divisor_q1 = distance_q1*distance_q1
-            cos_q1 = (ahead_q1*wrist_x - d4*wrist_y)/divisor_q1
-            sin_q1 = (ahead_q1*wrist_y + d4*wrist_x)/divisor_q1
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)
-            sin_q1 = sin(free_a1)
+            cos_q1_before_q1_for_q3 = cos(free_a1)
+            sin_q1_before_q1_for_q3 = sin(free_a1)
+        wrist_z = z - d6*r33
+        # turned within rounding, where the rest can be reached
+        if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
+            ahead_q1 = ahead_q1_before_q1_for_q3
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
+            r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
+            radius_q6_before_q1_for_q3 = sqrt(
+                r21_from_q1_before_q1_for_q3*r21_from_q1_before_q1_for_q3
+                + r22_from_q1_before_q1_for_q3*r22_from_q1_before_q1_for_q3
+            )
+            q6_radius_of_q5_before_q1_for_q3 = radius_q6_before_q1_for_q3*sigma_wrist
+            cos_q5_before_q1_for_q3 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
+            r21_from_q1_rate_q1_for_q3 = -r11*cos_q1_before_q1_for_q3 - r21*sin_q1_before_q1_for_q3
+            r22_from_q1_rate_q1_for_q3 = -r12*cos_q1_before_q1_for_q3 - r22*sin_q1_before_q1_for_q3
+            along_q6_rate_q1_for_q3 = -r21_from_q1_rate_q1_for_q3*sigma_wrist
+            across_q6_rate_q1_for_q3 = r22_from_q1_rate_q1_for_q3*sigma_wrist
+            if radius_q6_before_q1_for_q3 > 1e-11:
+                along_q6_before_q1_for_q3 = -r21_from_q1_before_q1_for_q3*sigma_wrist
+                cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
+                across_q6_before_q1_for_q3 = r22_from_q1_before_q1_for_q3*sigma_wrist
+                sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
+                radius_q6_rate_q1_for_q3 = (
+                    0.5
+                    *(
+                        2.0*r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                        + 2.0*r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                    )
+                    /radius_q6_before_q1_for_q3
+                )
+                cos_q6_rate_q1_for_q3 = (
+                    along_q6_rate_q1_for_q3/radius_q6_before_q1_for_q3
+                    - along_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3/(
+                        radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                    )
+                )
+                sin_q6_rate_q1_for_q3 = (
+                    across_q6_rate_q1_for_q3/radius_q6_before_q1_for_q3
+                    - across_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3/(
+                        radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                    )
+                )
+            else:
+                cos_q6_before_q1_for_q3 = cos(free_a6)
+                sin_q6_before_q1_for_q3 = sin(free_a6)
+                if radius_q6_before_q1_for_q3 > 0.0:
+                    radius_q6_rate_q1_for_q3 = (
+                        0.5
+                        *(
+                            2.0*r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                            + 2.0*r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                        )
+                        /radius_q6_before_q1_for_q3
+                    )
+                else:
+                    radius_q6_rate_q1_for_q3 = 0.0
+                cos_q6_rate_q1_for_q3 = 0.0
+                sin_q6_rate_q1_for_q3 = 0.0
+            r21_from_q1_before_q6_before_q1_for_q3 = r31*cos_q6_before_q1_for_q3 - r32*sin_q6_before_q1_for_q3
+            r21_from_q1_before_q56_before_q1_for_q3 = (
+                r21_from_q1_before_q6_before_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_before_q1_for_q3*r33
+            )
+            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q1_for_q3
+            r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3 + r31*sin_q6_before_q1_for_q3
+            wrist_y_from_q1_before_q1_for_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3 - d1
+            # a later step needs this of q1: no larger in size than
+            value_q1_for_q3 = (
+                wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+                + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - a2*a2 - a3*a3
+            )
+            # turned within rounding, where the rest can be reached
+            if abs(value_q1_for_q3) <= size_q1_for_q3:
+                ahead_q1 = ahead_q1_before_q1_for_q3
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                r23_from_q1_rate_q1_for_q3 = -r13*cos_q1_before_q1_for_q3 - r23*sin_q1_before_q1_for_q3
+                q6_radius_of_q5_rate_q1_for_q3 = radius_q6_rate_q1_for_q3*sigma_wrist
+                r21_from_q1_before_q6_rate_q1_for_q3 = r31*cos_q6_rate_q1_for_q3 - r32*sin_q6_rate_q1_for_q3
+                r21_from_q1_before_q56_rate_q1_for_q3 = (
+                    r21_from_q1_before_q6_rate_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_rate_q1_for_q3*r33
+                    - r21_from_q1_before_q6_before_q1_for_q3*r23_from_q1_rate_q1_for_q3
+                )
+                wrist_x_from_q1_rate_q1_for_q3 = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3
+                r22_from_q1_before_q6_rate_q1_for_q3 = r32*cos_q6_rate_q1_for_q3 + r31*sin_q6_rate_q1_for_q3
+                wrist_y_from_q1_rate_q1_for_q3 = d5*r22_from_q1_before_q6_rate_q1_for_q3
+                # how it changes with q1
+                rate_q1_for_q3 = (
+                    2.0*wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
+                    + 2.0*wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
+                )
+                along_q6_q1_for_q3 = (
+                    2.0*d5*r32*wrist_z - 2.0*d1*d5*r32 - 2.0*ahead_q1_before_q1_for_q3*d5*r31*cos_q5_before_q1_for_q3
+                )
+                across_q6_q1_for_q3 = (
+                    2.0*d5*r31*wrist_z + 2.0*ahead_q1_before_q1_for_q3*d5*r32*cos_q5_before_q1_for_q3 - 2.0*d1*d5*r31
+                )
+                swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
+                # the arc: cosines from its centre
+                if swing_q6_q1_for_q3 > 9.999999000000001e-13*size_q1_for_q3:
+                    level_q6_q1_for_q3 = (
+                        value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
+                    )
+                    highest_q6_q1_for_q3 = (
+                        1.0
+                        if (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 > 1.0
+                        else (
+                            -1.0
+                            if (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 < -1.0
+                            else (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3
+                        )
+                    )
+                    lowest_q6_q1_for_q3 = (
+                        1.0
+                        if (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 > 1.0
+                        else (
+                            -1.0
+                            if (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 < -1.0
+                            else (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3
+                        )
+                    )
+                else:
+                    highest_q6_q1_for_q3 = 1.0
+                    lowest_q6_q1_for_q3 = -1.0
+                near_q6_q1_for_q3 = arctan2(
+                    root((1.0 - highest_q6_q1_for_q3)*(1.0 + highest_q6_q1_for_q3)) + 0.0, highest_q6_q1_for_q3 + 0.0,
+                )
+                far_q6_q1_for_q3 = arctan2(
+                    root((1.0 - lowest_q6_q1_for_q3)*(1.0 + lowest_q6_q1_for_q3)) + 0.0, lowest_q6_q1_for_q3 + 0.0,
+                )
+                centre_q6_q1_for_q3 = arctan2(across_q6_q1_for_q3 + 0.0, along_q6_q1_for_q3 + 0.0)
+                angle_q6_q1_for_q3 = arctan2(sin_q6_before_q1_for_q3 + 0.0, cos_q6_before_q1_for_q3 + 0.0)
+                side_q6_q1_for_q3 = (
+                    1.0
+                    if along_q6_q1_for_q3*sin_q6_before_q1_for_q3 - across_q6_q1_for_q3*cos_q6_before_q1_for_q3 >= 0.0
+                    else -1.0
+                )
+                moved_q6_q1_for_q3 = nearest_on_arc(
+                    angle_q6_q1_for_q3, centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
+                    0.5*far_q6_q1_for_q3 - 0.5*near_q6_q1_for_q3,
+                )
+                near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
+                near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
+                near_q_q1_for_q3 = near_cos_q6_q1_for_q3*r12*sigma_wrist + near_sin_q6_q1_for_q3*r11*sigma_wrist
+                near_p_q1_for_q3 = -near_cos_q6_q1_for_q3*r22*sigma_wrist - near_sin_q6_q1_for_q3*r21*sigma_wrist
+                near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
+                near_length_q1_for_q3 = near_radius_q1_for_q3 if near_radius_q1_for_q3 > 1e-12 else 1.0
+                near_along_q1_for_q3 = (
+                    (near_cos_q6_q1_for_q3*r11*sigma_wrist - near_sin_q6_q1_for_q3*r12*sigma_wrist)*near_p_q1_for_q3
+                    - (near_sin_q6_q1_for_q3*r22*sigma_wrist - near_cos_q6_q1_for_q3*r21*sigma_wrist)*near_q_q1_for_q3
+                )
+                near_side_q1_for_q3 = -1.0 if near_along_q1_for_q3 < 0.0 else 1.0
+                near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3  # the earlier angle follows
+                near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3
+                if distance_q1 > 1e-11*machine_scale:
+                    near_cost_q1_for_q3 = abs(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
+                    mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
+                    mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
+                    mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
+                    mirrored_q_q1_for_q3 = mirrored_cos_q6_q1_for_q3*r12*sigma_wrist + mirrored_sin_q6_q1_for_q3*r11*sigma_wrist
+                    mirrored_p_q1_for_q3 = -mirrored_cos_q6_q1_for_q3*r22*sigma_wrist - mirrored_sin_q6_q1_for_q3*r21*sigma_wrist
+                    mirrored_radius_q1_for_q3 = sqrt(
+                        mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
+                    )
+                    mirrored_length_q1_for_q3 = mirrored_radius_q1_for_q3 if mirrored_radius_q1_for_q3 > 1e-12 else 1.0
+                    mirrored_along_q1_for_q3 = (
+                        (
+                            mirrored_cos_q6_q1_for_q3*r11*sigma_wrist - mirrored_sin_q6_q1_for_q3*r12*sigma_wrist
+                        )*mirrored_p_q1_for_q3
+                        - (
+                            mirrored_sin_q6_q1_for_q3*r22*sigma_wrist - mirrored_cos_q6_q1_for_q3*r21*sigma_wrist
+                        )*mirrored_q_q1_for_q3
+                    )
+                    mirrored_side_q1_for_q3 = -1.0 if mirrored_along_q1_for_q3 < 0.0 else 1.0
+                    # the earlier angle follows
+                    mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
+                    mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
+                    mirrored_cost_q1_for_q3 = abs(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
+                    if near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3:
+                        swept_cost_q1_for_q3 = near_cost_q1_for_q3
+                        swept_cos_q1_for_q3 = near_cos_q1_for_q3
+                        swept_sin_q1_for_q3 = near_sin_q1_for_q3
+                    else:
+                        swept_cost_q1_for_q3 = mirrored_cost_q1_for_q3
+                        swept_cos_q1_for_q3 = mirrored_cos_q1_for_q3
+                        swept_sin_q1_for_q3 = mirrored_sin_q1_for_q3
+                else:
+                    swept_cost_q1_for_q3 = 0.0
+                    swept_cos_q1_for_q3 = near_cos_q1_for_q3
+                    swept_sin_q1_for_q3 = near_sin_q1_for_q3
+                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
+                if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
+                    excess_q1_for_q3 = (
+                        value_q1_for_q3 - size_q1_for_q3
+                        if value_q1_for_q3 > 0.0
+                        else size_q1_for_q3 + value_q1_for_q3
+                    )
+                    turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
+                    if (turn_q1_for_q3*turn_q1_for_q3 > 1e-12) or (
+                        (across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3 + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)
+                        *turn_q1_for_q3*turn_q1_for_q3 > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                    ):
+                        best_cost_q1_for_q3 = swept_cost_q1_for_q3
+                        best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
+                        best_cos_q1_for_q3 = swept_cos_q1_for_q3
+                        best_sin_q1_for_q3 = swept_sin_q1_for_q3
+                    else:
+                        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                        turned_cos_q1_for_q3 = (
+                            (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                        )
+                        turned_sin_q1_for_q3 = (
+                            (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                        )
+                        # what is left of its own equation
+                        turned_cost_q1_for_q3 = abs(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+                        best_cost_q1_for_q3 = turned_cost_q1_for_q3
+                        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)/turned_length_q1_for_q3
+                        best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
+                        best_cos_q1_for_q3 = turned_cos_q1_for_q3
+                        best_sin_q1_for_q3 = turned_sin_q1_for_q3
+                else:
+                    best_cost_q1_for_q3 = swept_cost_q1_for_q3
+                    best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
+                    best_cos_q1_for_q3 = swept_cos_q1_for_q3
+                    best_sin_q1_for_q3 = swept_sin_q1_for_q3
+                # turned within rounding, where the rest can be reached
+                if best_cost_q1_for_q3 > 1e-12*machine_scale:
+                    ahead_q1 = ahead_q1_before_q1_for_q3
+                    cos_q1 = cos_q1_before_q1_for_q3
+                    sin_q1 = sin_q1_before_q1_for_q3
+                else:
+                    ahead_q1 = best_ahead_q1_for_q3
+                    cos_q1 = best_cos_q1_for_q3
+                    sin_q1 = best_sin_q1_for_q3
         cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
@@ -690,9 +928,8 @@ class Ac6ThreeParallel(Mechanism):
             sin_q6_before_q6_of_q3 = sin(free_a6)
         r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
         r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5*r33
-        wrist_x_from_q1_before_q6_of_q3 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
+        wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
         r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
-        wrist_z = z - d6*r33
         wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -700,16 +937,16 @@ class Ac6ThreeParallel(Mechanism):
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2*a2 - a3*a3
         )
         # kept where the rest can be reached
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > 1.000000001*size_q6_of_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > 1.000000001*size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
-                wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+                wrist_x_from_q1_fixed = ahead_q1 + d5*q6_radius_of_q5*r33
                 wrist_x_from_q1_along = -d5*r31*cos_q5
                 wrist_y_from_q1_fixed = wrist_z - d1
                 wrist_y_from_q1_along = d5*r32
@@ -723,26 +960,26 @@ class Ac6ThreeParallel(Mechanism):
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > 1e-12*size_q6_of_q3:
+                if swing_q6_of_q3 > 1e-12*size_q1_for_q3:
                     level_q6_of_q3 = (
                         value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                            if (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                            else (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -780,8 +1017,7 @@ class Ac6ThreeParallel(Mechanism):
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
-        # what the unknown links must span
-        wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56
+        wrist_x_from_q1 = ahead_q1 - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1035,16 +1271,17 @@ class Ac6ThreeParallel(Mechanism):
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
         solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        return solve(frame, reference) or super().branches(frame, reference)  # near a fold one after the other
 
     def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
-        return solve(frame, signs, reference)
+        found = solve(frame, signs, reference)
+        return super().branch(frame, signs, reference) if found == () else found  # near a fold with all that it takes
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
-        return solve(position, rotation, reference)
+        return solve(position, rotation, reference) or super()._every_branch(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

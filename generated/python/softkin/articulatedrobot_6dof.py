@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 66 additions, 68 multiplications, 8 divisions, 0 square roots, 14 sines
-    inverse: 147 additions, 150 multiplications, 37 divisions, 8 square roots, 12 sines
-    inverse, all 8 branches open: 945 additions, 885 multiplications, 233 divisions, 50 square roots, 96 sines
+    inverse: 158 additions, 171 multiplications, 41 divisions, 9 square roots, 12 sines
+    inverse, all 8 branches open: 1033 additions, 1053 multiplications, 265 divisions, 58 square roots, 96 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -44,7 +44,7 @@ from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Mechanism, Pose
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.articulatedrobot_6dof import unrolled
 
@@ -117,6 +117,7 @@ class Constants(NamedTuple):
     effective_q3: float
     rounding_q1: float
     swing_scale_q3: float
+    size_q1_for_q3: float
 
 
 class ArticulatedRobot6DOF(Mechanism):
@@ -465,6 +466,7 @@ class ArticulatedRobot6DOF(Mechanism):
         effective_q3 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
         swing_scale_q3 = 2.0*a2*effective_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
+        size_q1_for_q3 = 2.0*abs(effective_q3)*a2
         return Constants(
             d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, d6=d6, offset_a1=offset_a1, offset_a2=offset_a2,
             offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
@@ -479,7 +481,7 @@ class ArticulatedRobot6DOF(Mechanism):
             highest_a5=highest_a5, single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6,
             upper_a6=effective_upper_a6, unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6,
             single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale, effective_q3=effective_q3,
-            rounding_q1=rounding_q1, swing_scale_q3=swing_scale_q3,
+            rounding_q1=rounding_q1, swing_scale_q3=swing_scale_q3, size_q1_for_q3=size_q1_for_q3,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -673,6 +675,7 @@ class ArticulatedRobot6DOF(Mechanism):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
+        size_q1_for_q3 = k.size_q1_for_q3
         swing_scale_q3 = k.swing_scale_q3
         # numbers of reasonable size
         if not (
@@ -688,20 +691,61 @@ class ArticulatedRobot6DOF(Mechanism):
         # q1: out of reach
         if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
             return Status.UNREACHABLE
-        # its reference where it is free
-        if distance_q1 > 1e-11*machine_scale:
-            # how far ahead of the axis the point is; negative: behind
-            ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
-            divisor_q1 = distance_q1*distance_q1
-            cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/divisor_q1
-            sin_q1 = (ahead_q1*wrist_y + d3*wrist_x)/divisor_q1
-        else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)
-            sin_q1 = sin(free_a1)
-        wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        # how far ahead of the axis the point is; negative: behind
+        ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
+        wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
+        # a later step needs this of q1: no larger in size than
+        value_q1_for_q3 = (
+            wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 + wrist_y_from_q1*wrist_y_from_q1
+            - a2*a2 - effective_q3*effective_q3
+        )
+        rate_q1_for_q3 = -2.0*d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+        # to the boundary of the later step
+        if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
+            excess_q1_for_q3 = (
+                value_q1_for_q3 - size_q1_for_q3
+                if value_q1_for_q3 > 0.0
+                else size_q1_for_q3 + value_q1_for_q3
+            )
+            turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+        else:
+            turn_q1_for_q3 = 0.0
+        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)/turned_length_q1_for_q3
+        # its reference where it is free
+        if distance_q1 > 1e-11*machine_scale:
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3 = cos(free_a1)
+            sin_q1_before_q1_for_q3 = sin(free_a1)
+        turned_cos_q1_for_q3 = (
+            (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+        )
+        turned_sin_q1_for_q3 = (
+            (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+        )
+        # what is left of its own equation
+        turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+        # turned within rounding, where the rest can be reached
+        ahead_q1 = (
+            ahead_q1_before_q1_for_q3
+            if ahead_squared_q1 > 1e-6*machine_scale*machine_scale
+            else (
+                ahead_q1_before_q1_for_q3
+                if abs(value_q1_for_q3) <= size_q1_for_q3
+                else (
+                    ahead_q1_before_q1_for_q3
+                    if turned_cost_q1_for_q3 > 1e-12*machine_scale
+                    else turned_ahead_q1_for_q3
+                )
+            )
+        )
+        wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         below_q3 = (a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)  # zero where it is stretched or folded
         above_q3 = (effective_q3 + reach - a2)*(a2 + reach - effective_q3)  # zero where it is the other
@@ -709,6 +753,23 @@ class ArticulatedRobot6DOF(Mechanism):
         # q3: out of reach
         if not (product_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
             return Status.UNREACHABLE
+        # turned within rounding, where the rest can be reached
+        if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            # turned within rounding, where the rest can be reached
+            if abs(value_q1_for_q3) <= size_q1_for_q3:
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                # turned within rounding, where the rest can be reached
+                if turned_cost_q1_for_q3 > 1e-12*machine_scale:
+                    cos_q1 = cos_q1_before_q1_for_q3
+                    sin_q1 = sin_q1_before_q1_for_q3
+                else:
+                    cos_q1 = turned_cos_q1_for_q3
+                    sin_q1 = turned_sin_q1_for_q3
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
@@ -994,16 +1055,17 @@ class ArticulatedRobot6DOF(Mechanism):
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
         solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        return solve(frame, reference) or super().branches(frame, reference)  # near a fold one after the other
 
     def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
-        return solve(frame, signs, reference)
+        found = solve(frame, signs, reference)
+        return super().branch(frame, signs, reference) if found == () else found  # near a fold with all that it takes
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
-        return solve(position, rotation, reference)
+        return solve(position, rotation, reference) or super()._every_branch(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

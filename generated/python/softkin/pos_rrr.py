@@ -21,8 +21,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 30 additions, 26 multiplications, 5 divisions, 0 square roots, 8 sines
-    inverse: 61 additions, 51 multiplications, 17 divisions, 4 square roots, 7 sines
-    inverse, all 4 branches open: 241 additions, 204 multiplications, 68 divisions, 16 square roots, 28 sines
+    inverse: 72 additions, 72 multiplications, 21 divisions, 5 square roots, 7 sines
+    inverse, all 4 branches open: 285 additions, 288 multiplications, 84 divisions, 20 square roots, 28 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -37,7 +37,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._offset import OffsetKinematics
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, PlainFrame, Reals, Rotation, Status, Vector
 from softkin._unrolled.pos_rrr import unrolled
 
@@ -85,6 +85,7 @@ class Constants(NamedTuple):
     effective_q3_2: float
     rounding_q1: float
     swing_scale_q3_2: float
+    size_q1_for_q3_2: float
 
 
 class PosRRR(OffsetKinematics):
@@ -306,6 +307,7 @@ class PosRRR(OffsetKinematics):
         effective_q3_2 = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
         rounding_q1 = 1e-34*machine_scale*machine_scale  # what rounding may leave of a square of lengths
         swing_scale_q3_2 = 2.0*a2*effective_q3_2  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
+        size_q1_for_q3_2 = 2.0*abs(effective_q3_2)*a2
         return Constants(
             d1=d1, a1=a1, a2=a2, d3=d3, a3=a3, d4=d4, offset_a1=offset_a1, offset_a2=offset_a2, offset_a3=offset_a3,
             check_limits=check_limits, lower_a1=effective_lower_a1, upper_a1=effective_upper_a1,
@@ -314,7 +316,7 @@ class PosRRR(OffsetKinematics):
             highest_a2=highest_a2, single_a2=single_a2, mid_a2=mid_a2, lower_a3=effective_lower_a3,
             upper_a3=effective_upper_a3, unlimited_a3=unlimited_a3, lowest_a3=lowest_a3, highest_a3=highest_a3,
             single_a3=single_a3, mid_a3=mid_a3, machine_scale=machine_scale, effective_q3_2=effective_q3_2,
-            rounding_q1=rounding_q1, swing_scale_q3_2=swing_scale_q3_2,
+            rounding_q1=rounding_q1, swing_scale_q3_2=swing_scale_q3_2, size_q1_for_q3_2=size_q1_for_q3_2,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -424,6 +426,7 @@ class PosRRR(OffsetKinematics):
         single_a1 = k.single_a1
         single_a2 = k.single_a2
         single_a3 = k.single_a3
+        size_q1_for_q3_2 = k.size_q1_for_q3_2
         swing_scale_q3_2 = k.swing_scale_q3_2
         # numbers of reasonable size
         if not (
@@ -436,19 +439,60 @@ class PosRRR(OffsetKinematics):
         # q1: out of reach
         if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
             return Status.UNREACHABLE
+        wrist_y_from_q1 = z - d1  # what the unknown links must span
+        # how far ahead of the axis the point is; negative: behind
+        ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
+        wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
+        # a later step needs this of q1: no larger in size than
+        value_q1_for_q3 = (
+            wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 + wrist_y_from_q1*wrist_y_from_q1
+            - a2*a2 - effective_q3_2*effective_q3_2
+        )
+        rate_q1_for_q3 = -2.0*d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+        # to the boundary of the later step
+        if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3_2:
+            excess_q1_for_q3 = (
+                value_q1_for_q3 - size_q1_for_q3_2
+                if value_q1_for_q3 > 0.0
+                else size_q1_for_q3_2 + value_q1_for_q3
+            )
+            turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+        else:
+            turn_q1_for_q3 = 0.0
+        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)/turned_length_q1_for_q3
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            # how far ahead of the axis the point is; negative: behind
-            ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
             divisor_q1 = distance_q1*distance_q1
-            cos_q1 = (ahead_q1*x - d3*y)/divisor_q1
-            sin_q1 = (ahead_q1*y + d3*x)/divisor_q1
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/divisor_q1
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)
-            sin_q1 = sin(free_a1)
-        wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
+            cos_q1_before_q1_for_q3 = cos(free_a1)
+            sin_q1_before_q1_for_q3 = sin(free_a1)
+        turned_cos_q1_for_q3 = (
+            (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+        )
+        turned_sin_q1_for_q3 = (
+            (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+        )
+        # what is left of its own equation
+        turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
+        # turned within rounding, where the rest can be reached
+        ahead_q1 = (
+            ahead_q1_before_q1_for_q3
+            if ahead_squared_q1 > 1e-6*machine_scale*machine_scale
+            else (
+                ahead_q1_before_q1_for_q3
+                if abs(value_q1_for_q3) <= size_q1_for_q3_2
+                else (
+                    ahead_q1_before_q1_for_q3
+                    if turned_cost_q1_for_q3 > 1e-12*machine_scale
+                    else turned_ahead_q1_for_q3
+                )
+            )
+        )
+        wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         below_q3 = (a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)  # zero where it is stretched or folded
         above_q3 = (effective_q3_2 + reach - a2)*(a2 + reach - effective_q3_2)  # zero where it is the other
@@ -456,6 +500,23 @@ class PosRRR(OffsetKinematics):
         # q3: out of reach
         if not (product_q3 >= -1e-12*swing_scale_q3_2*swing_scale_q3_2):
             return Status.UNREACHABLE
+        # turned within rounding, where the rest can be reached
+        if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            # turned within rounding, where the rest can be reached
+            if abs(value_q1_for_q3) <= size_q1_for_q3_2:
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                # turned within rounding, where the rest can be reached
+                if turned_cost_q1_for_q3 > 1e-12*machine_scale:
+                    cos_q1 = cos_q1_before_q1_for_q3
+                    sin_q1 = sin_q1_before_q1_for_q3
+                else:
+                    cos_q1 = turned_cos_q1_for_q3
+                    sin_q1 = turned_sin_q1_for_q3
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
@@ -698,19 +759,61 @@ class PosRRR(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_q3 = effective_q3 if effective_q3 > 1e-9*a2 else 1.0
         swing_scale_q3 = 2.0*a2*divisor_q3  # q3: law of cosines in the x_from_q1² + y_from_q1² equation
+        wrist_y_from_q1 = z - d1  # what the unknown links must span
+        # how far ahead of the axis the point is; negative: behind
+        ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
+        wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
+        # a later step needs this of q1: no larger in size than
+        value_q1_for_q3 = (
+            wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 + wrist_y_from_q1*wrist_y_from_q1
+            - a2*a2 - divisor_q3*divisor_q3
+        )
+        size_q1_for_q3 = 2.0*abs(divisor_q3)*a2
+        rate_q1_for_q3 = -2.0*tool_z*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+        # to the boundary of the later step
+        if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
+            excess_q1_for_q3 = (
+                value_q1_for_q3 - size_q1_for_q3
+                if value_q1_for_q3 > 0.0
+                else size_q1_for_q3 + value_q1_for_q3
+            )
+            turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+        else:
+            turn_q1_for_q3 = 0.0
+        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - tool_z*turn_q1_for_q3)/turned_length_q1_for_q3
         # its reference where it is free
         if distance_q1 > 1e-11*machine_scale:
-            # how far ahead of the axis the point is; negative: behind
-            ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
             divisor_q1 = distance_q1*distance_q1
-            cos_q1 = (ahead_q1*x - tool_z*y)/divisor_q1
-            sin_q1 = (ahead_q1*y + tool_z*x)/divisor_q1
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - tool_z*y)/divisor_q1
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + tool_z*x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)
-            sin_q1 = sin(free_a1)
-        wrist_x_from_q1 = x*cos_q1 + y*sin_q1 - a1  # what the unknown links must span
-        wrist_y_from_q1 = z - d1  # what the unknown links must span
+            cos_q1_before_q1_for_q3 = cos(free_a1)
+            sin_q1_before_q1_for_q3 = sin(free_a1)
+        turned_cos_q1_for_q3 = (
+            (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+        )
+        turned_sin_q1_for_q3 = (
+            (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+        )
+        # what is left of its own equation
+        turned_cost_q1_for_q3 = abs(tool_z + turned_cos_q1_for_q3*y - turned_sin_q1_for_q3*x)
+        # turned within rounding, where the rest can be reached
+        ahead_q1 = (
+            ahead_q1_before_q1_for_q3
+            if ahead_squared_q1 > 1e-6*machine_scale*machine_scale
+            else (
+                ahead_q1_before_q1_for_q3
+                if abs(value_q1_for_q3) <= size_q1_for_q3
+                else (
+                    ahead_q1_before_q1_for_q3
+                    if turned_cost_q1_for_q3 > 1e-12*machine_scale
+                    else turned_ahead_q1_for_q3
+                )
+            )
+        )
+        wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         below_q3 = (a2 + divisor_q3 + reach)*(a2 + divisor_q3 - reach)  # zero where it is stretched or folded
         above_q3 = (divisor_q3 + reach - a2)*(a2 + reach - divisor_q3)  # zero where it is the other
@@ -718,6 +821,23 @@ class PosRRR(OffsetKinematics):
         # q3: out of reach
         if not (product_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
             return Status.UNREACHABLE
+        # turned within rounding, where the rest can be reached
+        if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            # turned within rounding, where the rest can be reached
+            if abs(value_q1_for_q3) <= size_q1_for_q3:
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                # turned within rounding, where the rest can be reached
+                if turned_cost_q1_for_q3 > 1e-12*machine_scale:
+                    cos_q1 = cos_q1_before_q1_for_q3
+                    sin_q1 = sin_q1_before_q1_for_q3
+                else:
+                    cos_q1 = turned_cos_q1_for_q3
+                    sin_q1 = turned_sin_q1_for_q3
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
@@ -807,16 +927,17 @@ class PosRRR(OffsetKinematics):
     def branches(self, frame: PlainFrame, reference: Reals | None = None) -> tuple[Reals | None, ...]:
         """Every branch for inner loops: see `Mechanism.branches`."""
         solve = self._all_trusted  # looked up faster by itself than in a call
-        return solve(frame, reference)
+        return solve(frame, reference) or super().branches(frame, reference)  # near a fold one after the other
 
     def branch(self, frame: PlainFrame, signs: Reals, reference: Reals | None = None) -> Reals | None:
         """One branch for inner loops: see `Mechanism.branch`."""
         solve = self._one_trusted
-        return solve(frame, signs, reference)
+        found = solve(frame, signs, reference)
+        return super().branch(frame, signs, reference) if found == () else found  # near a fold with all that it takes
 
     def _every_branch(self, position: Vector, rotation: Rotation, reference: Reals) -> tuple[Reals | float, ...]:
         solve = self._all_checked
-        return solve(position, rotation, reference)
+        return solve(position, rotation, reference) or super()._every_branch(position, rotation, reference)
 
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""

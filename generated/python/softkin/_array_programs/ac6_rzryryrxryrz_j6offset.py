@@ -271,27 +271,11 @@ class ArrayPrograms(Programs):
         )
         wrist_x_closed = x - d6*r13  # the point that the last joints turn about
         wrist_y_closed = y - d6*r23
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
         # q1: of the point from its axis
         distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
-
-        def elsewhere_cos_q1_closed(free_a1: Real) -> Reals:
-            cos_q1_closed = cos(free_a1)  # its reference where it is free
-            sin_q1_closed = sin(free_a1)
-            return (cos_q1_closed, sin_q1_closed)
-
-        along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
-        cos_q1_closed = along_q1_closed/distance_q1_closed  # its reference where it is free
-        across_q1_closed = sigma_shoulder*wrist_y_closed
-        sin_q1_closed = across_q1_closed/distance_q1_closed
-        cos_q1_closed, sin_q1_closed = elsewhere(
-            distance_q1_closed > 1e-11*machine_scale,
-            (cos_q1_closed, sin_q1_closed),
-            elsewhere_cos_q1_closed,
-            (free_a1,),
-        )
-        # what the unknown links must span
-        wrist_x_from_q1_closed = wrist_x_closed*cos_q1_closed + wrist_y_closed*sin_q1_closed - a1
+        # how far ahead of the axis the point is; negative: behind
+        ahead_q1_closed = distance_q1_closed*sigma_shoulder
+        wrist_x_from_q1_closed = ahead_q1_closed - a1  # what the unknown links must span
         wrist_z_closed = z - d6*r33
         wrist_z_from_q1_closed = wrist_z_closed - d1  # what the unknown links must span
         reach_closed = sqrt(
@@ -310,6 +294,7 @@ class ArrayPrograms(Programs):
         )
         # without the offset there is no second crossing
         require(status, (searched > 0.5) | (sigma_crossing > 0.0), Status.UNREACHABLE)
+        free_a1 = (ref_a1 - offset_a1)*DEGREE
         free_a2 = (ref_a2 - offset_a2)*DEGREE
         free_a5 = (ref_a5 - offset_a5)*DEGREE
         free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -356,10 +341,8 @@ class ArrayPrograms(Programs):
             )
             r31_from_q1_before_q56_tried = r31_from_q1_before_q6_tried*cos_q5_tried + r33*sin_q5_tried
             sin_q23_tried = -r31_from_q1_before_q56_tried
-            x_from_q1_of_q2_tried = (
-                wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1 - a3*sin_q23_tried
-                - d4*r33_from_q1_before_q456_tried
-            )
+            ahead_q1_tried = distance_q1_tried*sigma_shoulder  # how far ahead of the axis the point is; negative: behind
+            x_from_q1_of_q2_tried = ahead_q1_tried - a1 - a3*sin_q23_tried - d4*r33_from_q1_before_q456_tried
             wrist_z_tried = z + j6_offset_x*r32*sin_q6_tried - d6*r33 - j6_offset_x*r31*cos_q6_tried
             z_from_q1_of_q2_tried = wrist_z_tried + d4*sin_q23_tried - d1 - a3*r33_from_q1_before_q456_tried
             reach_tried = sqrt(x_from_q1_of_q2_tried*x_from_q1_of_q2_tried + z_from_q1_of_q2_tried*z_from_q1_of_q2_tried)
@@ -517,6 +500,22 @@ class ArrayPrograms(Programs):
             cos_q6 = cos_q6_tried
             sin_q6 = sin_q6_tried
         else:
+
+            def elsewhere_cos_q1_closed(free_a1: Real) -> Reals:
+                cos_q1_closed = cos(free_a1)  # its reference where it is free
+                sin_q1_closed = sin(free_a1)
+                return (cos_q1_closed, sin_q1_closed)
+
+            along_q1_closed = sigma_shoulder*wrist_x_closed  # q1: aimed by the y_from_q1 equation
+            cos_q1_closed = along_q1_closed/distance_q1_closed  # its reference where it is free
+            across_q1_closed = sigma_shoulder*wrist_y_closed
+            sin_q1_closed = across_q1_closed/distance_q1_closed
+            cos_q1_closed, sin_q1_closed = elsewhere(
+                distance_q1_closed > 1e-11*machine_scale,
+                (cos_q1_closed, sin_q1_closed),
+                elsewhere_cos_q1_closed,
+                (free_a1,),
+            )
             cos_q1 = cos_q1_closed
             sin_q1 = sin_q1_closed
             both_q3_closed = above_q3_closed + below_q3_closed  # twice the scale, with the rounding of its parts

@@ -175,7 +175,7 @@ class ArrayPrograms(Programs):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
-        size_q6_of_q3 = k.size_q6_of_q3
+        size_q1_for_q3 = k.size_q1_for_q3
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -193,18 +193,394 @@ class ArrayPrograms(Programs):
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
         require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
+        # how far ahead of the axis the point is; negative: behind
+        ahead_q1_before_q1_for_q3 = -root(ahead_squared_q1)*sigma_shoulder
 
-        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
+        def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)  # its reference where it is free
-            sin_q1 = sin(free_a1)
-            return (cos_q1, sin_q1)
+            cos_q1_before_q1_for_q3 = cos(free_a1)  # its reference where it is free
+            sin_q1_before_q1_for_q3 = sin(free_a1)
+            return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
 
-        ahead_q1 = -root(ahead_squared_q1)*sigma_shoulder  # how far ahead of the axis the point is; negative: behind
         divisor_q1 = distance_q1*distance_q1
-        cos_q1 = (ahead_q1*wrist_x - d4*wrist_y)/divisor_q1  # its reference where it is free
-        sin_q1 = (ahead_q1*wrist_y + d4*wrist_x)/divisor_q1
-        cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
+        # its reference where it is free
+        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1
+        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/divisor_q1
+        cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
+            distance_q1 > 1e-11*machine_scale,
+            (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
+            elsewhere_cos_q1_before_q1_for_q3,
+            (ref_a1,),
+        )
+        wrist_z = z - d6*r33
+
+        def elsewhere_ahead_q1(
+            ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, distance_q1: Real, r11: Real, r12: Real,
+            r13: Real, r21: Real, r22: Real, r23: Real, r31: Real, r32: Real, r33: Real, ref_a6: Real,
+            sigma_wrist: Real, sin_q1_before_q1_for_q3: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+        ) -> Reals:
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
+            r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
+            radius_q6_before_q1_for_q3 = sqrt(
+                r21_from_q1_before_q1_for_q3*r21_from_q1_before_q1_for_q3
+                + r22_from_q1_before_q1_for_q3*r22_from_q1_before_q1_for_q3
+            )
+            q6_radius_of_q5_before_q1_for_q3 = radius_q6_before_q1_for_q3*sigma_wrist
+            cos_q5_before_q1_for_q3 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
+            r21_from_q1_rate_q1_for_q3 = -r11*cos_q1_before_q1_for_q3 - r21*sin_q1_before_q1_for_q3
+            r22_from_q1_rate_q1_for_q3 = -r12*cos_q1_before_q1_for_q3 - r22*sin_q1_before_q1_for_q3
+            along_q6_rate_q1_for_q3 = -r21_from_q1_rate_q1_for_q3*sigma_wrist
+            across_q6_rate_q1_for_q3 = r22_from_q1_rate_q1_for_q3*sigma_wrist
+
+            def elsewhere_cos_q6_before_q1_for_q3(
+                free_a6: Real, r21_from_q1_before_q1_for_q3: Real, r21_from_q1_rate_q1_for_q3: Real,
+                r22_from_q1_before_q1_for_q3: Real, r22_from_q1_rate_q1_for_q3: Real, radius_q6_before_q1_for_q3: Real,
+            ) -> Reals:
+                cos_q6_before_q1_for_q3 = cos(free_a6)
+                sin_q6_before_q1_for_q3 = sin(free_a6)
+
+                def elsewhere_radius_q6_rate_q1_for_q3() -> Reals:
+                    radius_q6_rate_q1_for_q3 = 0.0
+                    return (radius_q6_rate_q1_for_q3,)
+
+                radius_q6_rate_q1_for_q3 = (
+                    0.5
+                    *(
+                        2.0*r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                        + 2.0*r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                    )
+                    /radius_q6_before_q1_for_q3
+                )
+                (radius_q6_rate_q1_for_q3,) = elsewhere(
+                    radius_q6_before_q1_for_q3 > 0.0,
+                    (radius_q6_rate_q1_for_q3,),
+                    elsewhere_radius_q6_rate_q1_for_q3,
+                    (),
+                )
+                cos_q6_rate_q1_for_q3 = 0.0
+                sin_q6_rate_q1_for_q3 = 0.0
+                return (
+                    cos_q6_before_q1_for_q3, sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3, cos_q6_rate_q1_for_q3,
+                    sin_q6_rate_q1_for_q3,
+                )
+
+            along_q6_before_q1_for_q3 = -r21_from_q1_before_q1_for_q3*sigma_wrist
+            cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
+            across_q6_before_q1_for_q3 = r22_from_q1_before_q1_for_q3*sigma_wrist
+            sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
+            radius_q6_rate_q1_for_q3 = (
+                0.5
+                *(
+                    2.0*r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                    + 2.0*r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                )
+                /radius_q6_before_q1_for_q3
+            )
+            cos_q6_rate_q1_for_q3 = (
+                along_q6_rate_q1_for_q3/radius_q6_before_q1_for_q3
+                - along_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3/(
+                    radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                )
+            )
+            sin_q6_rate_q1_for_q3 = (
+                across_q6_rate_q1_for_q3/radius_q6_before_q1_for_q3
+                - across_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3/(
+                    radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                )
+            )
+            found = elsewhere(
+                radius_q6_before_q1_for_q3 > 1e-11,
+                (
+                    cos_q6_before_q1_for_q3, sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3, cos_q6_rate_q1_for_q3,
+                    sin_q6_rate_q1_for_q3,
+                ),
+                elsewhere_cos_q6_before_q1_for_q3,
+                (
+                    free_a6, r21_from_q1_before_q1_for_q3, r21_from_q1_rate_q1_for_q3, r22_from_q1_before_q1_for_q3,
+                    r22_from_q1_rate_q1_for_q3, radius_q6_before_q1_for_q3,
+                ),
+            )
+            (
+                cos_q6_before_q1_for_q3, sin_q6_before_q1_for_q3, radius_q6_rate_q1_for_q3, cos_q6_rate_q1_for_q3,
+                sin_q6_rate_q1_for_q3,
+            ) = found
+            r21_from_q1_before_q6_before_q1_for_q3 = r31*cos_q6_before_q1_for_q3 - r32*sin_q6_before_q1_for_q3
+            r21_from_q1_before_q56_before_q1_for_q3 = (
+                r21_from_q1_before_q6_before_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_before_q1_for_q3*r33
+            )
+            wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q1_for_q3
+            r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3 + r31*sin_q6_before_q1_for_q3
+            wrist_y_from_q1_before_q1_for_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3 - d1
+            # a later step needs this of q1: no larger in size than
+            value_q1_for_q3 = (
+                wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+                + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - a2*a2 - a3*a3
+            )
+
+            def elsewhere_ahead_q1(
+                across_q6_rate_q1_for_q3: Real, ahead_q1_before_q1_for_q3: Real, along_q6_rate_q1_for_q3: Real,
+                cos_q1_before_q1_for_q3: Real, cos_q5_before_q1_for_q3: Real, cos_q6_before_q1_for_q3: Real,
+                cos_q6_rate_q1_for_q3: Real, distance_q1: Real, r11: Real, r12: Real, r13: Real, r21: Real,
+                r21_from_q1_before_q6_before_q1_for_q3: Real, r22: Real, r23: Real, r31: Real, r32: Real, r33: Real,
+                radius_q6_before_q1_for_q3: Real, radius_q6_rate_q1_for_q3: Real, sigma_wrist: Real,
+                sin_q1_before_q1_for_q3: Real, sin_q6_before_q1_for_q3: Real, sin_q6_rate_q1_for_q3: Real,
+                value_q1_for_q3: Real, wrist_x: Real, wrist_x_from_q1_before_q1_for_q3: Real, wrist_y: Real,
+                wrist_y_from_q1_before_q1_for_q3: Real, wrist_z: Real,
+            ) -> Reals:
+                r23_from_q1_rate_q1_for_q3 = -r13*cos_q1_before_q1_for_q3 - r23*sin_q1_before_q1_for_q3
+                q6_radius_of_q5_rate_q1_for_q3 = radius_q6_rate_q1_for_q3*sigma_wrist
+                r21_from_q1_before_q6_rate_q1_for_q3 = r31*cos_q6_rate_q1_for_q3 - r32*sin_q6_rate_q1_for_q3
+                r21_from_q1_before_q56_rate_q1_for_q3 = (
+                    r21_from_q1_before_q6_rate_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_rate_q1_for_q3*r33
+                    - r21_from_q1_before_q6_before_q1_for_q3*r23_from_q1_rate_q1_for_q3
+                )
+                wrist_x_from_q1_rate_q1_for_q3 = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3
+                r22_from_q1_before_q6_rate_q1_for_q3 = r32*cos_q6_rate_q1_for_q3 + r31*sin_q6_rate_q1_for_q3
+                wrist_y_from_q1_rate_q1_for_q3 = d5*r22_from_q1_before_q6_rate_q1_for_q3
+                # how it changes with q1
+                rate_q1_for_q3 = (
+                    2.0*wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
+                    + 2.0*wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
+                )
+                along_q6_q1_for_q3 = (
+                    2.0*d5*r32*wrist_z - 2.0*d1*d5*r32 - 2.0*ahead_q1_before_q1_for_q3*d5*r31*cos_q5_before_q1_for_q3
+                )
+                across_q6_q1_for_q3 = (
+                    2.0*d5*r31*wrist_z + 2.0*ahead_q1_before_q1_for_q3*d5*r32*cos_q5_before_q1_for_q3 - 2.0*d1*d5*r31
+                )
+                swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
+
+                def elsewhere_highest_q6_q1_for_q3() -> Reals:
+                    highest_q6_q1_for_q3 = 1.0  # the arc: cosines from its centre
+                    lowest_q6_q1_for_q3 = -1.0
+                    return (highest_q6_q1_for_q3, lowest_q6_q1_for_q3)
+
+                level_q6_q1_for_q3 = (
+                    value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
+                )
+                # the arc: cosines from its centre
+                highest_q6_q1_for_q3 = select(
+                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 > 1.0,
+                    1.0,
+                    select(
+                        (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 < -1.0,
+                        -1.0,
+                        (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3,
+                    ),
+                )
+                lowest_q6_q1_for_q3 = select(
+                    (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 > 1.0,
+                    1.0,
+                    select(
+                        (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 < -1.0,
+                        -1.0,
+                        (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3,
+                    ),
+                )
+                highest_q6_q1_for_q3, lowest_q6_q1_for_q3 = elsewhere(
+                    swing_q6_q1_for_q3 > 9.999999000000001e-13*size_q1_for_q3,
+                    (highest_q6_q1_for_q3, lowest_q6_q1_for_q3),
+                    elsewhere_highest_q6_q1_for_q3,
+                    (),
+                )
+                near_q6_q1_for_q3 = atan2(
+                    root((1.0 - highest_q6_q1_for_q3)*(1.0 + highest_q6_q1_for_q3)),
+                    highest_q6_q1_for_q3,
+                )
+                far_q6_q1_for_q3 = atan2(root((1.0 - lowest_q6_q1_for_q3)*(1.0 + lowest_q6_q1_for_q3)), lowest_q6_q1_for_q3)
+                centre_q6_q1_for_q3 = atan2(across_q6_q1_for_q3, along_q6_q1_for_q3)
+                angle_q6_q1_for_q3 = atan2(sin_q6_before_q1_for_q3, cos_q6_before_q1_for_q3)
+                side_q6_q1_for_q3 = select(
+                    along_q6_q1_for_q3*sin_q6_before_q1_for_q3 - across_q6_q1_for_q3*cos_q6_before_q1_for_q3 >= 0.0, 1.0,
+                    -1.0,
+                )
+                moved_q6_q1_for_q3 = nearest_on_arc(
+                    angle_q6_q1_for_q3, centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
+                    0.5*far_q6_q1_for_q3 - 0.5*near_q6_q1_for_q3,
+                )
+                near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
+                near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
+                near_q_q1_for_q3 = near_cos_q6_q1_for_q3*r12*sigma_wrist + near_sin_q6_q1_for_q3*r11*sigma_wrist
+                near_p_q1_for_q3 = -near_cos_q6_q1_for_q3*r22*sigma_wrist - near_sin_q6_q1_for_q3*r21*sigma_wrist
+                near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
+                near_length_q1_for_q3 = select(near_radius_q1_for_q3 > 1e-12, near_radius_q1_for_q3, 1.0)
+                near_along_q1_for_q3 = (
+                    (near_cos_q6_q1_for_q3*r11*sigma_wrist - near_sin_q6_q1_for_q3*r12*sigma_wrist)*near_p_q1_for_q3
+                    - (near_sin_q6_q1_for_q3*r22*sigma_wrist - near_cos_q6_q1_for_q3*r21*sigma_wrist)*near_q_q1_for_q3
+                )
+                near_side_q1_for_q3 = select(near_along_q1_for_q3 < 0.0, -1.0, 1.0)
+                near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3  # the earlier angle follows
+                near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3
+
+                def elsewhere_swept_cost_q1_for_q3_2(near_cos_q1_for_q3: Real, near_sin_q1_for_q3: Real) -> Reals:
+                    swept_cost_q1_for_q3 = 0.0
+                    swept_cos_q1_for_q3 = near_cos_q1_for_q3
+                    swept_sin_q1_for_q3 = near_sin_q1_for_q3
+                    return (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3)
+
+                near_cost_q1_for_q3 = absolute(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
+                mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
+                mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
+                mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
+                mirrored_q_q1_for_q3 = mirrored_cos_q6_q1_for_q3*r12*sigma_wrist + mirrored_sin_q6_q1_for_q3*r11*sigma_wrist
+                mirrored_p_q1_for_q3 = -mirrored_cos_q6_q1_for_q3*r22*sigma_wrist - mirrored_sin_q6_q1_for_q3*r21*sigma_wrist
+                mirrored_radius_q1_for_q3 = sqrt(
+                    mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
+                )
+                mirrored_length_q1_for_q3 = select(mirrored_radius_q1_for_q3 > 1e-12, mirrored_radius_q1_for_q3, 1.0)
+                mirrored_along_q1_for_q3 = (
+                    (
+                        mirrored_cos_q6_q1_for_q3*r11*sigma_wrist - mirrored_sin_q6_q1_for_q3*r12*sigma_wrist
+                    )*mirrored_p_q1_for_q3
+                    - (
+                        mirrored_sin_q6_q1_for_q3*r22*sigma_wrist - mirrored_cos_q6_q1_for_q3*r21*sigma_wrist
+                    )*mirrored_q_q1_for_q3
+                )
+                mirrored_side_q1_for_q3 = select(mirrored_along_q1_for_q3 < 0.0, -1.0, 1.0)
+                # the earlier angle follows
+                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
+                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
+                mirrored_cost_q1_for_q3 = absolute(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
+
+                def elsewhere_swept_cost_q1_for_q3(
+                    mirrored_cos_q1_for_q3: Real, mirrored_cost_q1_for_q3: Real, mirrored_sin_q1_for_q3: Real,
+                ) -> Reals:
+                    swept_cost_q1_for_q3 = mirrored_cost_q1_for_q3
+                    swept_cos_q1_for_q3 = mirrored_cos_q1_for_q3
+                    swept_sin_q1_for_q3 = mirrored_sin_q1_for_q3
+                    return (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3)
+
+                swept_cost_q1_for_q3 = near_cost_q1_for_q3
+                swept_cos_q1_for_q3 = near_cos_q1_for_q3
+                swept_sin_q1_for_q3 = near_sin_q1_for_q3
+                swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3 = elsewhere(
+                    near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3,
+                    (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3),
+                    elsewhere_swept_cost_q1_for_q3,
+                    (mirrored_cos_q1_for_q3, mirrored_cost_q1_for_q3, mirrored_sin_q1_for_q3),
+                )
+                swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3 = elsewhere(
+                    distance_q1 > 1e-11*machine_scale,
+                    (swept_cost_q1_for_q3, swept_cos_q1_for_q3, swept_sin_q1_for_q3),
+                    elsewhere_swept_cost_q1_for_q3_2,
+                    (near_cos_q1_for_q3, near_sin_q1_for_q3),
+                )
+                swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
+
+                def elsewhere_best_cost_q1_for_q3_2(
+                    swept_ahead_q1_for_q3: Real, swept_cos_q1_for_q3: Real, swept_cost_q1_for_q3: Real,
+                    swept_sin_q1_for_q3: Real,
+                ) -> Reals:
+                    best_cost_q1_for_q3 = swept_cost_q1_for_q3
+                    best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
+                    best_cos_q1_for_q3 = swept_cos_q1_for_q3
+                    best_sin_q1_for_q3 = swept_sin_q1_for_q3
+                    return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
+
+                excess_q1_for_q3 = select(
+                    value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3,
+                )
+                turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
+
+                def elsewhere_best_cost_q1_for_q3(
+                    ahead_q1_before_q1_for_q3: Real, cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real,
+                    turn_q1_for_q3: Real, wrist_x: Real, wrist_y: Real,
+                ) -> Reals:
+                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                    turned_cos_q1_for_q3 = (
+                        (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                    )
+                    turned_sin_q1_for_q3 = (
+                        (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                    )
+                    # what is left of its own equation
+                    turned_cost_q1_for_q3 = absolute(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+                    best_cost_q1_for_q3 = turned_cost_q1_for_q3
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)/turned_length_q1_for_q3
+                    best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
+                    best_cos_q1_for_q3 = turned_cos_q1_for_q3
+                    best_sin_q1_for_q3 = turned_sin_q1_for_q3
+                    return (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3)
+
+                best_cost_q1_for_q3 = swept_cost_q1_for_q3
+                best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
+                best_cos_q1_for_q3 = swept_cos_q1_for_q3
+                best_sin_q1_for_q3 = swept_sin_q1_for_q3
+                best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3 = elsewhere(
+                    (
+                        (turn_q1_for_q3*turn_q1_for_q3 > 1e-12)
+                        | (
+                            (
+                                across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3
+                                + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3
+                            )
+                            *turn_q1_for_q3*turn_q1_for_q3 > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                        )
+                    ),
+                    (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
+                    elsewhere_best_cost_q1_for_q3,
+                    (
+                        ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turn_q1_for_q3, wrist_x,
+                        wrist_y,
+                    ),
+                )
+                best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3 = elsewhere(
+                    absolute(rate_q1_for_q3) > 1e-12*size_q1_for_q3,
+                    (best_cost_q1_for_q3, best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
+                    elsewhere_best_cost_q1_for_q3_2,
+                    (swept_ahead_q1_for_q3, swept_cos_q1_for_q3, swept_cost_q1_for_q3, swept_sin_q1_for_q3),
+                )
+
+                def elsewhere_ahead_q1(
+                    best_ahead_q1_for_q3: Real, best_cos_q1_for_q3: Real, best_sin_q1_for_q3: Real,
+                ) -> Reals:
+                    ahead_q1 = best_ahead_q1_for_q3  # turned within rounding, where the rest can be reached
+                    cos_q1 = best_cos_q1_for_q3  # turned within rounding, where the rest can be reached
+                    sin_q1 = best_sin_q1_for_q3  # turned within rounding, where the rest can be reached
+                    return (ahead_q1, cos_q1, sin_q1)
+
+                ahead_q1 = ahead_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+                cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+                sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+                ahead_q1, cos_q1, sin_q1 = elsewhere(
+                    best_cost_q1_for_q3 > 1e-12*machine_scale,
+                    (ahead_q1, cos_q1, sin_q1),
+                    elsewhere_ahead_q1,
+                    (best_ahead_q1_for_q3, best_cos_q1_for_q3, best_sin_q1_for_q3),
+                )
+                return (ahead_q1, cos_q1, sin_q1)
+
+            ahead_q1 = ahead_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+            cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+            sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+            ahead_q1, cos_q1, sin_q1 = elsewhere(
+                absolute(value_q1_for_q3) <= size_q1_for_q3,
+                (ahead_q1, cos_q1, sin_q1),
+                elsewhere_ahead_q1,
+                (
+                    across_q6_rate_q1_for_q3, ahead_q1_before_q1_for_q3, along_q6_rate_q1_for_q3, cos_q1_before_q1_for_q3,
+                    cos_q5_before_q1_for_q3, cos_q6_before_q1_for_q3, cos_q6_rate_q1_for_q3, distance_q1, r11, r12, r13,
+                    r21, r21_from_q1_before_q6_before_q1_for_q3, r22, r23, r31, r32, r33, radius_q6_before_q1_for_q3,
+                    radius_q6_rate_q1_for_q3, sigma_wrist, sin_q1_before_q1_for_q3, sin_q6_before_q1_for_q3,
+                    sin_q6_rate_q1_for_q3, value_q1_for_q3, wrist_x, wrist_x_from_q1_before_q1_for_q3, wrist_y,
+                    wrist_y_from_q1_before_q1_for_q3, wrist_z,
+                ),
+            )
+            return (ahead_q1, cos_q1, sin_q1)
+
+        ahead_q1 = ahead_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+        cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+        sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+        ahead_q1, cos_q1, sin_q1 = elsewhere(
+            ahead_squared_q1 > 1e-6*machine_scale*machine_scale,
+            (ahead_q1, cos_q1, sin_q1),
+            elsewhere_ahead_q1,
+            (
+                ahead_q1_before_q1_for_q3, cos_q1_before_q1_for_q3, distance_q1, r11, r12, r13, r21, r22, r23, r31,
+                r32, r33, ref_a6, sigma_wrist, sin_q1_before_q1_for_q3, wrist_x, wrist_y, wrist_z,
+            ),
+        )
         cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
         r21_from_q1 = r21*cos_q1 - r11*sin_q1
         r22_from_q1 = r22*cos_q1 - r12*sin_q1
@@ -229,9 +605,8 @@ class ArrayPrograms(Programs):
         )
         r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
         r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5*r33
-        wrist_x_from_q1_before_q6_of_q3 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
+        wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
         r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
-        wrist_z = z - d6*r33
         wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -240,17 +615,15 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_cos_q6(
-            cos_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5: Real, r31: Real, r32: Real,
-            r33: Real, radius_q6: Real, sin_q1: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
-            wrist_x: Real, wrist_y: Real, wrist_z: Real,
+            ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5: Real, r31: Real, r32: Real,
+            r33: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real, wrist_z: Real,
         ) -> Reals:
 
             def elsewhere_cos_q6(
-                cos_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5: Real, r31: Real, r32: Real,
-                r33: Real, radius_q6: Real, sin_q1: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real,
-                wrist_x: Real, wrist_y: Real, wrist_z: Real,
+                ahead_q1: Real, cos_q5: Real, cos_q6_before_q6_of_q3: Real, q6_radius_of_q5: Real, r31: Real, r32: Real,
+                r33: Real, radius_q6: Real, sin_q6_before_q6_of_q3: Real, value_q6_of_q3: Real, wrist_z: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+                wrist_x_from_q1_fixed = ahead_q1 + d5*q6_radius_of_q5*r33
                 wrist_x_from_q1_along = -d5*r31*cos_q5
                 wrist_y_from_q1_fixed = wrist_z - d1
                 wrist_y_from_q1_along = d5*r32
@@ -274,24 +647,24 @@ class ArrayPrograms(Programs):
                 )
                 # the arc: cosines from its centre
                 highest_q6_of_q3 = select(
-                    (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0,
+                    (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0,
                     1.0,
                     select(
-                        (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3,
+                        (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0, -1.0,
+                        (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3,
                     ),
                 )
                 lowest_q6_of_q3 = select(
-                    (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0,
+                    (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0,
                     1.0,
                     select(
-                        (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0,
+                        (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0,
                         -1.0,
-                        (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3,
+                        (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3,
                     ),
                 )
                 highest_q6_of_q3, lowest_q6_of_q3 = elsewhere(
-                    swing_q6_of_q3 > 1e-12*size_q6_of_q3,
+                    swing_q6_of_q3 > 1e-12*size_q1_for_q3,
                     (highest_q6_of_q3, lowest_q6_of_q3),
                     elsewhere_highest_q6_of_q3,
                     (),
@@ -336,12 +709,12 @@ class ArrayPrograms(Programs):
             cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
             sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
             cos_q6, sin_q6 = elsewhere(
-                (radius_q6 > 0.1) & (absolute(value_q6_of_q3) > 1.000000001*size_q6_of_q3),
+                (radius_q6 > 0.1) & (absolute(value_q6_of_q3) > 1.000000001*size_q1_for_q3),
                 (cos_q6, sin_q6),
                 elsewhere_cos_q6,
                 (
-                    cos_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5, r31, r32, r33, radius_q6, sin_q1,
-                    sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_x, wrist_y, wrist_z,
+                    ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5, r31, r32, r33, radius_q6,
+                    sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_z,
                 ),
             )
             return (cos_q6, sin_q6)
@@ -349,18 +722,17 @@ class ArrayPrograms(Programs):
         cos_q6 = cos_q6_before_q6_of_q3  # kept where the rest can be reached
         sin_q6 = sin_q6_before_q6_of_q3  # kept where the rest can be reached
         cos_q6, sin_q6 = elsewhere(
-            absolute(value_q6_of_q3) <= size_q6_of_q3,
+            absolute(value_q6_of_q3) <= size_q1_for_q3,
             (cos_q6, sin_q6),
             elsewhere_cos_q6,
             (
-                cos_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5, r31, r32, r33, radius_q6, sin_q1,
-                sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_x, wrist_y, wrist_z,
+                ahead_q1, cos_q5, cos_q6_before_q6_of_q3, q6_radius_of_q5, r31, r32, r33, radius_q6,
+                sin_q6_before_q6_of_q3, value_q6_of_q3, wrist_z,
             ),
         )
         r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
         r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
-        # what the unknown links must span
-        wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56
+        wrist_x_from_q1 = ahead_q1 - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -507,7 +879,7 @@ class ArrayPrograms(Programs):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
-        size_q6_of_q3 = k.size_q6_of_q3
+        size_q1_for_q3 = k.size_q1_for_q3
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -525,74 +897,1690 @@ class ArrayPrograms(Programs):
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
         require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
+        # how far ahead of the axis the point is; negative: behind
+        ahead_q1_before_q1_for_q3_right = root(ahead_squared_q1)
 
-        def elsewhere_cos_q1_left(ref_a1: Real) -> Reals:
+        def elsewhere_cos_q1_before_q1_for_q3_left(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_left = cos(free_a1)  # its reference where it is free
-            sin_q1_left = sin(free_a1)
-            cos_q1_right = cos_q1_left  # its reference where it is free
-            sin_q1_right = sin_q1_left
-            return (cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right)
+            cos_q1_before_q1_for_q3_left = cos(free_a1)  # its reference where it is free
+            sin_q1_before_q1_for_q3_left = sin(free_a1)
+            cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left  # its reference where it is free
+            sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
+            return (
+                cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
+                sin_q1_before_q1_for_q3_right,
+            )
 
-        ahead_q1_right = root(ahead_squared_q1)  # how far ahead of the axis the point is; negative: behind
         divisor_q1 = distance_q1*distance_q1
-        cos_q1_left = (-ahead_q1_right*wrist_x - d4*wrist_y)/divisor_q1  # its reference where it is free
-        sin_q1_left = (d4*wrist_x - ahead_q1_right*wrist_y)/divisor_q1
-        cos_q1_right = (ahead_q1_right*wrist_x - d4*wrist_y)/divisor_q1  # its reference where it is free
-        sin_q1_right = (ahead_q1_right*wrist_y + d4*wrist_x)/divisor_q1
-        cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right = elsewhere(
+        # its reference where it is free
+        cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/divisor_q1
+        sin_q1_before_q1_for_q3_left = (d4*wrist_x - ahead_q1_before_q1_for_q3_right*wrist_y)/divisor_q1
+        # its reference where it is free
+        cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_x - d4*wrist_y)/divisor_q1
+        sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_right*wrist_y + d4*wrist_x)/divisor_q1
+        found = elsewhere(
             distance_q1 > 1e-11*machine_scale,
-            (cos_q1_left, sin_q1_left, cos_q1_right, sin_q1_right),
-            elsewhere_cos_q1_left,
+            (
+                cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
+                sin_q1_before_q1_for_q3_right,
+            ),
+            elsewhere_cos_q1_before_q1_for_q3_left,
             (ref_a1,),
         )
-        cos_q5_left = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
-        r21_from_q1_left = r21*cos_q1_left - r11*sin_q1_left
-        r22_from_q1_left = r22*cos_q1_left - r12*sin_q1_left
+        (
+            cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
+            sin_q1_before_q1_for_q3_right,
+        ) = found
+        wrist_z = z - d6*r33
+
+        def elsewhere_ahead_q1_left_down(
+            ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
+            cos_q1_before_q1_for_q3_right: Real, distance_q1: Real, r11: Real, r12: Real, r13: Real, r21: Real,
+            r22: Real, r23: Real, r31: Real, r32: Real, r33: Real, ref_a6: Real, sin_q1_before_q1_for_q3_left: Real,
+            sin_q1_before_q1_for_q3_right: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+        ) -> Reals:
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            r21_from_q1_before_q1_for_q3_left = r21*cos_q1_before_q1_for_q3_left - r11*sin_q1_before_q1_for_q3_left
+            r22_from_q1_before_q1_for_q3_left = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
+            radius_q6_before_q1_for_q3_left = sqrt(
+                r21_from_q1_before_q1_for_q3_left*r21_from_q1_before_q1_for_q3_left
+                + r22_from_q1_before_q1_for_q3_left*r22_from_q1_before_q1_for_q3_left
+            )
+            cos_q5_before_q1_for_q3_left = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left
+            r21_from_q1_rate_q1_for_q3_left = -r11*cos_q1_before_q1_for_q3_left - r21*sin_q1_before_q1_for_q3_left
+            r22_from_q1_rate_q1_for_q3_left = -r12*cos_q1_before_q1_for_q3_left - r22*sin_q1_before_q1_for_q3_left
+
+            def elsewhere_cos_q6_before_q1_for_q3_left_down(
+                free_a6: Real, r21_from_q1_before_q1_for_q3_left: Real, r21_from_q1_rate_q1_for_q3_left: Real,
+                r22_from_q1_before_q1_for_q3_left: Real, r22_from_q1_rate_q1_for_q3_left: Real,
+                radius_q6_before_q1_for_q3_left: Real,
+            ) -> Reals:
+                cos_q6_before_q1_for_q3_left_down = cos(free_a6)
+                sin_q6_before_q1_for_q3_left_down = sin(free_a6)
+
+                def elsewhere_radius_q6_rate_q1_for_q3_left() -> Reals:
+                    radius_q6_rate_q1_for_q3_left = 0.0
+                    return (radius_q6_rate_q1_for_q3_left,)
+
+                radius_q6_rate_q1_for_q3_left = (
+                    0.5
+                    *(
+                        2.0*r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                        + 2.0*r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                    )
+                    /radius_q6_before_q1_for_q3_left
+                )
+                (radius_q6_rate_q1_for_q3_left,) = elsewhere(
+                    radius_q6_before_q1_for_q3_left > 0.0,
+                    (radius_q6_rate_q1_for_q3_left,),
+                    elsewhere_radius_q6_rate_q1_for_q3_left,
+                    (),
+                )
+                cos_q6_rate_q1_for_q3_left_down = 0.0
+                sin_q6_rate_q1_for_q3_left_down = 0.0
+                cos_q6_before_q1_for_q3_left_up = cos_q6_before_q1_for_q3_left_down
+                sin_q6_before_q1_for_q3_left_up = sin_q6_before_q1_for_q3_left_down
+                cos_q6_rate_q1_for_q3_left_up = 0.0
+                sin_q6_rate_q1_for_q3_left_up = 0.0
+                return (
+                    cos_q6_before_q1_for_q3_left_down, sin_q6_before_q1_for_q3_left_down, radius_q6_rate_q1_for_q3_left,
+                    cos_q6_rate_q1_for_q3_left_down, sin_q6_rate_q1_for_q3_left_down, cos_q6_before_q1_for_q3_left_up,
+                    sin_q6_before_q1_for_q3_left_up, cos_q6_rate_q1_for_q3_left_up, sin_q6_rate_q1_for_q3_left_up,
+                )
+
+            cos_q6_before_q1_for_q3_left_down = -r21_from_q1_before_q1_for_q3_left/radius_q6_before_q1_for_q3_left
+            sin_q6_before_q1_for_q3_left_down = r22_from_q1_before_q1_for_q3_left/radius_q6_before_q1_for_q3_left
+            radius_q6_rate_q1_for_q3_left = (
+                0.5
+                *(
+                    2.0*r21_from_q1_before_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                    + 2.0*r22_from_q1_before_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                )
+                /radius_q6_before_q1_for_q3_left
+            )
+            cos_q6_rate_q1_for_q3_left_down = (
+                r21_from_q1_before_q1_for_q3_left*radius_q6_rate_q1_for_q3_left/(
+                    radius_q6_before_q1_for_q3_left*radius_q6_before_q1_for_q3_left
+                )
+                - r21_from_q1_rate_q1_for_q3_left/radius_q6_before_q1_for_q3_left
+            )
+            sin_q6_rate_q1_for_q3_left_down = (
+                r22_from_q1_rate_q1_for_q3_left/radius_q6_before_q1_for_q3_left
+                - r22_from_q1_before_q1_for_q3_left*radius_q6_rate_q1_for_q3_left/(
+                    radius_q6_before_q1_for_q3_left*radius_q6_before_q1_for_q3_left
+                )
+            )
+            cos_q6_before_q1_for_q3_left_up = -cos_q6_before_q1_for_q3_left_down
+            sin_q6_before_q1_for_q3_left_up = -sin_q6_before_q1_for_q3_left_down
+            cos_q6_rate_q1_for_q3_left_up = -cos_q6_rate_q1_for_q3_left_down
+            sin_q6_rate_q1_for_q3_left_up = -sin_q6_rate_q1_for_q3_left_down
+            found = elsewhere(
+                radius_q6_before_q1_for_q3_left > 1e-11,
+                (
+                    cos_q6_before_q1_for_q3_left_down, sin_q6_before_q1_for_q3_left_down, radius_q6_rate_q1_for_q3_left,
+                    cos_q6_rate_q1_for_q3_left_down, sin_q6_rate_q1_for_q3_left_down, cos_q6_before_q1_for_q3_left_up,
+                    sin_q6_before_q1_for_q3_left_up, cos_q6_rate_q1_for_q3_left_up, sin_q6_rate_q1_for_q3_left_up,
+                ),
+                elsewhere_cos_q6_before_q1_for_q3_left_down,
+                (
+                    free_a6, r21_from_q1_before_q1_for_q3_left, r21_from_q1_rate_q1_for_q3_left,
+                    r22_from_q1_before_q1_for_q3_left, r22_from_q1_rate_q1_for_q3_left, radius_q6_before_q1_for_q3_left,
+                ),
+            )
+            (
+                cos_q6_before_q1_for_q3_left_down, sin_q6_before_q1_for_q3_left_down, radius_q6_rate_q1_for_q3_left,
+                cos_q6_rate_q1_for_q3_left_down, sin_q6_rate_q1_for_q3_left_down, cos_q6_before_q1_for_q3_left_up,
+                sin_q6_before_q1_for_q3_left_up, cos_q6_rate_q1_for_q3_left_up, sin_q6_rate_q1_for_q3_left_up,
+            ) = found
+            r21_from_q1_before_q6_before_q1_for_q3_left_down = (
+                r31*cos_q6_before_q1_for_q3_left_down - r32*sin_q6_before_q1_for_q3_left_down
+            )
+            r21_from_q1_before_q56_before_q1_for_q3_left_down = (
+                r21_from_q1_before_q6_before_q1_for_q3_left_down*cos_q5_before_q1_for_q3_left
+                - r33*radius_q6_before_q1_for_q3_left
+            )
+            wrist_x_from_q1_before_q1_for_q3_left_down = (
+                -ahead_q1_before_q1_for_q3_right - d5*r21_from_q1_before_q56_before_q1_for_q3_left_down
+            )
+            r22_from_q1_before_q6_before_q1_for_q3_left_down = (
+                r32*cos_q6_before_q1_for_q3_left_down + r31*sin_q6_before_q1_for_q3_left_down
+            )
+            wrist_y_from_q1_before_q1_for_q3_left_down = (
+                wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3_left_down - d1
+            )
+            # a later step needs this of q1: no larger in size than
+            value_q1_for_q3_left_down = (
+                wrist_x_from_q1_before_q1_for_q3_left_down*wrist_x_from_q1_before_q1_for_q3_left_down
+                + wrist_y_from_q1_before_q1_for_q3_left_down*wrist_y_from_q1_before_q1_for_q3_left_down - a2*a2 - a3*a3
+            )
+            r23_from_q1_rate_q1_for_q3_left = -r13*cos_q1_before_q1_for_q3_left - r23*sin_q1_before_q1_for_q3_left
+            r21_from_q1_before_q6_rate_q1_for_q3_left_down = (
+                r31*cos_q6_rate_q1_for_q3_left_down - r32*sin_q6_rate_q1_for_q3_left_down
+            )
+            r21_from_q1_before_q56_rate_q1_for_q3_left_down = (
+                r21_from_q1_before_q6_rate_q1_for_q3_left_down*cos_q5_before_q1_for_q3_left
+                - r21_from_q1_before_q6_before_q1_for_q3_left_down*r23_from_q1_rate_q1_for_q3_left
+                - r33*radius_q6_rate_q1_for_q3_left
+            )
+            wrist_x_from_q1_rate_q1_for_q3_left_down = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3_left_down
+            r22_from_q1_before_q6_rate_q1_for_q3_left_down = (
+                r32*cos_q6_rate_q1_for_q3_left_down + r31*sin_q6_rate_q1_for_q3_left_down
+            )
+            wrist_y_from_q1_rate_q1_for_q3_left_down = d5*r22_from_q1_before_q6_rate_q1_for_q3_left_down
+            # how it changes with q1
+            rate_q1_for_q3_left_down = (
+                2.0*wrist_x_from_q1_before_q1_for_q3_left_down*wrist_x_from_q1_rate_q1_for_q3_left_down
+                + 2.0*wrist_y_from_q1_before_q1_for_q3_left_down*wrist_y_from_q1_rate_q1_for_q3_left_down
+            )
+
+            def elsewhere_turn_q1_for_q3_left_down() -> Reals:
+                turn_q1_for_q3_left_down = 1.0  # to the boundary of the later step
+                follows_q1_for_q3_left_down = 1.0  # 1 where it follows q6
+                return (turn_q1_for_q3_left_down, follows_q1_for_q3_left_down)
+
+            excess_q1_for_q3_left_down = select(
+                value_q1_for_q3_left_down > 0.0, value_q1_for_q3_left_down - size_q1_for_q3,
+                size_q1_for_q3 + value_q1_for_q3_left_down,
+            )
+            # to the boundary of the later step
+            turn_q1_for_q3_left_down = -excess_q1_for_q3_left_down/rate_q1_for_q3_left_down
+            # 1 where it follows q6
+            follows_q1_for_q3_left_down = select(
+                (
+                    (turn_q1_for_q3_left_down*turn_q1_for_q3_left_down > 1e-12)
+                    | (
+                        (
+                            r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                            + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                        )
+                        *turn_q1_for_q3_left_down*turn_q1_for_q3_left_down > 1e-12*radius_q6_before_q1_for_q3_left
+                        *radius_q6_before_q1_for_q3_left
+                    )
+                ),
+                1.0,
+                0.0,
+            )
+            turn_q1_for_q3_left_down, follows_q1_for_q3_left_down = elsewhere(
+                absolute(rate_q1_for_q3_left_down) > 1e-12*size_q1_for_q3,
+                (turn_q1_for_q3_left_down, follows_q1_for_q3_left_down),
+                elsewhere_turn_q1_for_q3_left_down,
+                (),
+            )
+            turned_length_q1_for_q3_left_down = root(1.0 + turn_q1_for_q3_left_down*turn_q1_for_q3_left_down)
+            turned_cos_q1_for_q3_left_down = (
+                (cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left)
+                /turned_length_q1_for_q3_left_down
+            )
+            turned_sin_q1_for_q3_left_down = (
+                (sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left)
+                /turned_length_q1_for_q3_left_down
+            )
+            # what is left of its own equation
+            turned_cost_q1_for_q3_left_down = absolute(
+                d4 + turned_cos_q1_for_q3_left_down*wrist_y - turned_sin_q1_for_q3_left_down*wrist_x
+            )
+            along_q6_q1_for_q3_left = (
+                2.0*d5*r32*wrist_z + 2.0*ahead_q1_before_q1_for_q3_right*d5*r31*cos_q5_before_q1_for_q3_left
+                - 2.0*d1*d5*r32
+            )
+            across_q6_q1_for_q3_left = (
+                2.0*d5*r31*wrist_z - 2.0*d1*d5*r31
+                - 2.0*ahead_q1_before_q1_for_q3_right*d5*r32*cos_q5_before_q1_for_q3_left
+            )
+            swing_q6_q1_for_q3_left = sqrt(
+                across_q6_q1_for_q3_left*across_q6_q1_for_q3_left + along_q6_q1_for_q3_left*along_q6_q1_for_q3_left
+            )
+            r21_from_q1_before_q6_before_q1_for_q3_left_up = (
+                r31*cos_q6_before_q1_for_q3_left_up - r32*sin_q6_before_q1_for_q3_left_up
+            )
+            r21_from_q1_before_q56_before_q1_for_q3_left_up = (
+                r21_from_q1_before_q6_before_q1_for_q3_left_up*cos_q5_before_q1_for_q3_left
+                + r33*radius_q6_before_q1_for_q3_left
+            )
+            wrist_x_from_q1_before_q1_for_q3_left_up = (
+                -ahead_q1_before_q1_for_q3_right - d5*r21_from_q1_before_q56_before_q1_for_q3_left_up
+            )
+            r22_from_q1_before_q6_before_q1_for_q3_left_up = (
+                r32*cos_q6_before_q1_for_q3_left_up + r31*sin_q6_before_q1_for_q3_left_up
+            )
+            wrist_y_from_q1_before_q1_for_q3_left_up = wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3_left_up - d1
+            # a later step needs this of q1: no larger in size than
+            value_q1_for_q3_left_up = (
+                wrist_x_from_q1_before_q1_for_q3_left_up*wrist_x_from_q1_before_q1_for_q3_left_up
+                + wrist_y_from_q1_before_q1_for_q3_left_up*wrist_y_from_q1_before_q1_for_q3_left_up - a2*a2 - a3*a3
+            )
+
+            def elsewhere_highest_q6_q1_for_q3_left_down() -> Reals:
+                highest_q6_q1_for_q3_left_down = 1.0  # the arc: cosines from its centre
+                lowest_q6_q1_for_q3_left_down = -1.0
+                highest_q6_q1_for_q3_left_up = 1.0  # the arc: cosines from its centre
+                lowest_q6_q1_for_q3_left_up = -1.0
+                return (
+                    highest_q6_q1_for_q3_left_down, lowest_q6_q1_for_q3_left_down, highest_q6_q1_for_q3_left_up,
+                    lowest_q6_q1_for_q3_left_up,
+                )
+
+            level_q6_q1_for_q3_left_down = (
+                value_q1_for_q3_left_down - across_q6_q1_for_q3_left*sin_q6_before_q1_for_q3_left_down
+                - along_q6_q1_for_q3_left*cos_q6_before_q1_for_q3_left_down
+            )
+            # the arc: cosines from its centre
+            highest_q6_q1_for_q3_left_down = select(
+                (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_down)/swing_q6_q1_for_q3_left > 1.0,
+                1.0,
+                select(
+                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_down)/swing_q6_q1_for_q3_left < -1.0,
+                    -1.0,
+                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_down)/swing_q6_q1_for_q3_left,
+                ),
+            )
+            lowest_q6_q1_for_q3_left_down = select(
+                (-level_q6_q1_for_q3_left_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left > 1.0,
+                1.0,
+                select(
+                    (-level_q6_q1_for_q3_left_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left < -1.0,
+                    -1.0,
+                    (-level_q6_q1_for_q3_left_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left,
+                ),
+            )
+            level_q6_q1_for_q3_left_up = (
+                value_q1_for_q3_left_up - across_q6_q1_for_q3_left*sin_q6_before_q1_for_q3_left_up
+                - along_q6_q1_for_q3_left*cos_q6_before_q1_for_q3_left_up
+            )
+            # the arc: cosines from its centre
+            highest_q6_q1_for_q3_left_up = select(
+                (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_up)/swing_q6_q1_for_q3_left > 1.0,
+                1.0,
+                select(
+                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_up)/swing_q6_q1_for_q3_left < -1.0,
+                    -1.0,
+                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_left_up)/swing_q6_q1_for_q3_left,
+                ),
+            )
+            lowest_q6_q1_for_q3_left_up = select(
+                (-level_q6_q1_for_q3_left_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left > 1.0,
+                1.0,
+                select(
+                    (-level_q6_q1_for_q3_left_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left < -1.0,
+                    -1.0,
+                    (-level_q6_q1_for_q3_left_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_left,
+                ),
+            )
+            found = elsewhere(
+                swing_q6_q1_for_q3_left > 9.999999000000001e-13*size_q1_for_q3,
+                (
+                    highest_q6_q1_for_q3_left_down, lowest_q6_q1_for_q3_left_down, highest_q6_q1_for_q3_left_up,
+                    lowest_q6_q1_for_q3_left_up,
+                ),
+                elsewhere_highest_q6_q1_for_q3_left_down,
+                (),
+            )
+            (
+                highest_q6_q1_for_q3_left_down, lowest_q6_q1_for_q3_left_down, highest_q6_q1_for_q3_left_up,
+                lowest_q6_q1_for_q3_left_up,
+            ) = found
+            near_q6_q1_for_q3_left_down = atan2(
+                root((1.0 - highest_q6_q1_for_q3_left_down)*(1.0 + highest_q6_q1_for_q3_left_down)),
+                highest_q6_q1_for_q3_left_down,
+            )
+            far_q6_q1_for_q3_left_down = atan2(
+                root((1.0 - lowest_q6_q1_for_q3_left_down)*(1.0 + lowest_q6_q1_for_q3_left_down)),
+                lowest_q6_q1_for_q3_left_down,
+            )
+            centre_q6_q1_for_q3_left = atan2(across_q6_q1_for_q3_left, along_q6_q1_for_q3_left)
+            angle_q6_q1_for_q3_left_down = atan2(sin_q6_before_q1_for_q3_left_down, cos_q6_before_q1_for_q3_left_down)
+            side_q6_q1_for_q3_left_down = select(
+                (
+                    along_q6_q1_for_q3_left*sin_q6_before_q1_for_q3_left_down
+                    - across_q6_q1_for_q3_left*cos_q6_before_q1_for_q3_left_down >= 0.0
+                ),
+                1.0,
+                -1.0,
+            )
+            moved_q6_q1_for_q3_left_down = nearest_on_arc(
+                angle_q6_q1_for_q3_left_down,
+                (
+                    centre_q6_q1_for_q3_left
+                    + 0.5*(far_q6_q1_for_q3_left_down + near_q6_q1_for_q3_left_down)*side_q6_q1_for_q3_left_down
+                ),
+                0.5*far_q6_q1_for_q3_left_down - 0.5*near_q6_q1_for_q3_left_down,
+            )
+            near_cos_q6_q1_for_q3_left_down = cos(moved_q6_q1_for_q3_left_down)
+            near_sin_q6_q1_for_q3_left_down = sin(moved_q6_q1_for_q3_left_down)
+            near_q_q1_for_q3_left_down = near_cos_q6_q1_for_q3_left_down*r12 + near_sin_q6_q1_for_q3_left_down*r11
+            near_p_q1_for_q3_left_down = -near_cos_q6_q1_for_q3_left_down*r22 - near_sin_q6_q1_for_q3_left_down*r21
+            near_radius_q1_for_q3_left_down = sqrt(
+                near_p_q1_for_q3_left_down*near_p_q1_for_q3_left_down
+                + near_q_q1_for_q3_left_down*near_q_q1_for_q3_left_down
+            )
+            near_length_q1_for_q3_left_down = select(
+                near_radius_q1_for_q3_left_down > 1e-12, near_radius_q1_for_q3_left_down, 1.0,
+            )
+            near_along_q1_for_q3_left_down = (
+                (near_cos_q6_q1_for_q3_left_down*r11 - near_sin_q6_q1_for_q3_left_down*r12)*near_p_q1_for_q3_left_down
+                - (near_sin_q6_q1_for_q3_left_down*r22 - near_cos_q6_q1_for_q3_left_down*r21)*near_q_q1_for_q3_left_down
+            )
+            near_side_q1_for_q3_left_down = select(near_along_q1_for_q3_left_down < 0.0, -1.0, 1.0)
+            # the earlier angle follows
+            near_cos_q1_for_q3_left_down = (
+                -near_q_q1_for_q3_left_down*near_side_q1_for_q3_left_down/near_length_q1_for_q3_left_down
+            )
+            near_sin_q1_for_q3_left_down = (
+                near_p_q1_for_q3_left_down*near_side_q1_for_q3_left_down/near_length_q1_for_q3_left_down
+            )
+            near_q6_q1_for_q3_left_up = atan2(
+                root((1.0 - highest_q6_q1_for_q3_left_up)*(1.0 + highest_q6_q1_for_q3_left_up)),
+                highest_q6_q1_for_q3_left_up,
+            )
+            far_q6_q1_for_q3_left_up = atan2(
+                root((1.0 - lowest_q6_q1_for_q3_left_up)*(1.0 + lowest_q6_q1_for_q3_left_up)),
+                lowest_q6_q1_for_q3_left_up,
+            )
+            angle_q6_q1_for_q3_left_up = atan2(sin_q6_before_q1_for_q3_left_up, cos_q6_before_q1_for_q3_left_up)
+            side_q6_q1_for_q3_left_up = select(
+                (
+                    along_q6_q1_for_q3_left*sin_q6_before_q1_for_q3_left_up
+                    - across_q6_q1_for_q3_left*cos_q6_before_q1_for_q3_left_up >= 0.0
+                ),
+                1.0,
+                -1.0,
+            )
+            moved_q6_q1_for_q3_left_up = nearest_on_arc(
+                angle_q6_q1_for_q3_left_up,
+                (
+                    centre_q6_q1_for_q3_left
+                    + 0.5*(far_q6_q1_for_q3_left_up + near_q6_q1_for_q3_left_up)*side_q6_q1_for_q3_left_up
+                ),
+                0.5*far_q6_q1_for_q3_left_up - 0.5*near_q6_q1_for_q3_left_up,
+            )
+            near_cos_q6_q1_for_q3_left_up = cos(moved_q6_q1_for_q3_left_up)
+            near_sin_q6_q1_for_q3_left_up = sin(moved_q6_q1_for_q3_left_up)
+            near_q_q1_for_q3_left_up = -near_cos_q6_q1_for_q3_left_up*r12 - near_sin_q6_q1_for_q3_left_up*r11
+            near_p_q1_for_q3_left_up = near_cos_q6_q1_for_q3_left_up*r22 + near_sin_q6_q1_for_q3_left_up*r21
+            near_radius_q1_for_q3_left_up = sqrt(
+                near_p_q1_for_q3_left_up*near_p_q1_for_q3_left_up + near_q_q1_for_q3_left_up*near_q_q1_for_q3_left_up
+            )
+            near_length_q1_for_q3_left_up = select(
+                near_radius_q1_for_q3_left_up > 1e-12, near_radius_q1_for_q3_left_up, 1.0,
+            )
+            near_along_q1_for_q3_left_up = (
+                (near_sin_q6_q1_for_q3_left_up*r12 - near_cos_q6_q1_for_q3_left_up*r11)*near_p_q1_for_q3_left_up
+                - (near_cos_q6_q1_for_q3_left_up*r21 - near_sin_q6_q1_for_q3_left_up*r22)*near_q_q1_for_q3_left_up
+            )
+            near_side_q1_for_q3_left_up = select(near_along_q1_for_q3_left_up < 0.0, -1.0, 1.0)
+            # the earlier angle follows
+            near_cos_q1_for_q3_left_up = (
+                -near_q_q1_for_q3_left_up*near_side_q1_for_q3_left_up/near_length_q1_for_q3_left_up
+            )
+            near_sin_q1_for_q3_left_up = (
+                near_p_q1_for_q3_left_up*near_side_q1_for_q3_left_up/near_length_q1_for_q3_left_up
+            )
+            r21_from_q1_before_q1_for_q3_right = r21*cos_q1_before_q1_for_q3_right - r11*sin_q1_before_q1_for_q3_right
+            r22_from_q1_before_q1_for_q3_right = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
+            radius_q6_before_q1_for_q3_right = sqrt(
+                r21_from_q1_before_q1_for_q3_right*r21_from_q1_before_q1_for_q3_right
+                + r22_from_q1_before_q1_for_q3_right*r22_from_q1_before_q1_for_q3_right
+            )
+            cos_q5_before_q1_for_q3_right = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
+
+            def elsewhere_length_q6_before_q1_for_q3_right(free_a6: Real) -> Reals:
+                length_q6_before_q1_for_q3_right = 1.0
+                cos_q6_before_q1_for_q3_right_down = cos(free_a6)
+                sin_q6_before_q1_for_q3_right_down = sin(free_a6)
+                cos_q6_before_q1_for_q3_right_up = cos_q6_before_q1_for_q3_right_down
+                sin_q6_before_q1_for_q3_right_up = sin_q6_before_q1_for_q3_right_down
+                return (
+                    length_q6_before_q1_for_q3_right, cos_q6_before_q1_for_q3_right_down, sin_q6_before_q1_for_q3_right_down,
+                    cos_q6_before_q1_for_q3_right_up, sin_q6_before_q1_for_q3_right_up,
+                )
+
+            length_q6_before_q1_for_q3_right = radius_q6_before_q1_for_q3_right
+            cos_q6_before_q1_for_q3_right_down = -r21_from_q1_before_q1_for_q3_right/length_q6_before_q1_for_q3_right
+            sin_q6_before_q1_for_q3_right_down = r22_from_q1_before_q1_for_q3_right/length_q6_before_q1_for_q3_right
+            cos_q6_before_q1_for_q3_right_up = -cos_q6_before_q1_for_q3_right_down
+            sin_q6_before_q1_for_q3_right_up = -sin_q6_before_q1_for_q3_right_down
+            found = elsewhere(
+                radius_q6_before_q1_for_q3_right > 1e-11,
+                (
+                    length_q6_before_q1_for_q3_right, cos_q6_before_q1_for_q3_right_down,
+                    sin_q6_before_q1_for_q3_right_down, cos_q6_before_q1_for_q3_right_up,
+                    sin_q6_before_q1_for_q3_right_up,
+                ),
+                elsewhere_length_q6_before_q1_for_q3_right,
+                (free_a6,),
+            )
+            (
+                length_q6_before_q1_for_q3_right, cos_q6_before_q1_for_q3_right_down,
+                sin_q6_before_q1_for_q3_right_down, cos_q6_before_q1_for_q3_right_up,
+                sin_q6_before_q1_for_q3_right_up,
+            ) = found
+            r21_from_q1_before_q6_before_q1_for_q3_right_down = (
+                r31*cos_q6_before_q1_for_q3_right_down - r32*sin_q6_before_q1_for_q3_right_down
+            )
+            r21_from_q1_before_q56_before_q1_for_q3_right_down = (
+                r21_from_q1_before_q6_before_q1_for_q3_right_down*cos_q5_before_q1_for_q3_right
+                - r33*radius_q6_before_q1_for_q3_right
+            )
+            wrist_x_from_q1_before_q1_for_q3_right_down = (
+                ahead_q1_before_q1_for_q3_right - d5*r21_from_q1_before_q56_before_q1_for_q3_right_down
+            )
+            r22_from_q1_before_q6_before_q1_for_q3_right_down = (
+                r32*cos_q6_before_q1_for_q3_right_down + r31*sin_q6_before_q1_for_q3_right_down
+            )
+            wrist_y_from_q1_before_q1_for_q3_right_down = (
+                wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3_right_down - d1
+            )
+            # a later step needs this of q1: no larger in size than
+            value_q1_for_q3_right_down = (
+                wrist_x_from_q1_before_q1_for_q3_right_down*wrist_x_from_q1_before_q1_for_q3_right_down
+                + wrist_y_from_q1_before_q1_for_q3_right_down*wrist_y_from_q1_before_q1_for_q3_right_down - a2*a2 - a3*a3
+            )
+            along_q6_q1_for_q3_right = (
+                2.0*d5*r32*wrist_z - 2.0*d1*d5*r32
+                - 2.0*ahead_q1_before_q1_for_q3_right*d5*r31*cos_q5_before_q1_for_q3_right
+            )
+            across_q6_q1_for_q3_right = (
+                2.0*d5*r31*wrist_z + 2.0*ahead_q1_before_q1_for_q3_right*d5*r32*cos_q5_before_q1_for_q3_right
+                - 2.0*d1*d5*r31
+            )
+            swing_q6_q1_for_q3_right = sqrt(
+                across_q6_q1_for_q3_right*across_q6_q1_for_q3_right + along_q6_q1_for_q3_right*along_q6_q1_for_q3_right
+            )
+            r21_from_q1_before_q6_before_q1_for_q3_right_up = (
+                r31*cos_q6_before_q1_for_q3_right_up - r32*sin_q6_before_q1_for_q3_right_up
+            )
+            r21_from_q1_before_q56_before_q1_for_q3_right_up = (
+                r21_from_q1_before_q6_before_q1_for_q3_right_up*cos_q5_before_q1_for_q3_right
+                + r33*radius_q6_before_q1_for_q3_right
+            )
+            wrist_x_from_q1_before_q1_for_q3_right_up = (
+                ahead_q1_before_q1_for_q3_right - d5*r21_from_q1_before_q56_before_q1_for_q3_right_up
+            )
+            r22_from_q1_before_q6_before_q1_for_q3_right_up = (
+                r32*cos_q6_before_q1_for_q3_right_up + r31*sin_q6_before_q1_for_q3_right_up
+            )
+            wrist_y_from_q1_before_q1_for_q3_right_up = wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3_right_up - d1
+            # a later step needs this of q1: no larger in size than
+            value_q1_for_q3_right_up = (
+                wrist_x_from_q1_before_q1_for_q3_right_up*wrist_x_from_q1_before_q1_for_q3_right_up
+                + wrist_y_from_q1_before_q1_for_q3_right_up*wrist_y_from_q1_before_q1_for_q3_right_up - a2*a2 - a3*a3
+            )
+
+            def elsewhere_highest_q6_q1_for_q3_right_down() -> Reals:
+                highest_q6_q1_for_q3_right_down = 1.0  # the arc: cosines from its centre
+                lowest_q6_q1_for_q3_right_down = -1.0
+                highest_q6_q1_for_q3_right_up = 1.0  # the arc: cosines from its centre
+                lowest_q6_q1_for_q3_right_up = -1.0
+                return (
+                    highest_q6_q1_for_q3_right_down, lowest_q6_q1_for_q3_right_down, highest_q6_q1_for_q3_right_up,
+                    lowest_q6_q1_for_q3_right_up,
+                )
+
+            level_q6_q1_for_q3_right_down = (
+                value_q1_for_q3_right_down - across_q6_q1_for_q3_right*sin_q6_before_q1_for_q3_right_down
+                - along_q6_q1_for_q3_right*cos_q6_before_q1_for_q3_right_down
+            )
+            # the arc: cosines from its centre
+            highest_q6_q1_for_q3_right_down = select(
+                (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_down)/swing_q6_q1_for_q3_right > 1.0,
+                1.0,
+                select(
+                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_down)/swing_q6_q1_for_q3_right < -1.0,
+                    -1.0,
+                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_down)/swing_q6_q1_for_q3_right,
+                ),
+            )
+            lowest_q6_q1_for_q3_right_down = select(
+                (-level_q6_q1_for_q3_right_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right > 1.0,
+                1.0,
+                select(
+                    (-level_q6_q1_for_q3_right_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right < -1.0,
+                    -1.0,
+                    (-level_q6_q1_for_q3_right_down - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right,
+                ),
+            )
+            level_q6_q1_for_q3_right_up = (
+                value_q1_for_q3_right_up - across_q6_q1_for_q3_right*sin_q6_before_q1_for_q3_right_up
+                - along_q6_q1_for_q3_right*cos_q6_before_q1_for_q3_right_up
+            )
+            # the arc: cosines from its centre
+            highest_q6_q1_for_q3_right_up = select(
+                (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_up)/swing_q6_q1_for_q3_right > 1.0,
+                1.0,
+                select(
+                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_up)/swing_q6_q1_for_q3_right < -1.0,
+                    -1.0,
+                    (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3_right_up)/swing_q6_q1_for_q3_right,
+                ),
+            )
+            lowest_q6_q1_for_q3_right_up = select(
+                (-level_q6_q1_for_q3_right_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right > 1.0,
+                1.0,
+                select(
+                    (-level_q6_q1_for_q3_right_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right < -1.0,
+                    -1.0,
+                    (-level_q6_q1_for_q3_right_up - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3_right,
+                ),
+            )
+            found = elsewhere(
+                swing_q6_q1_for_q3_right > 9.999999000000001e-13*size_q1_for_q3,
+                (
+                    highest_q6_q1_for_q3_right_down, lowest_q6_q1_for_q3_right_down, highest_q6_q1_for_q3_right_up,
+                    lowest_q6_q1_for_q3_right_up,
+                ),
+                elsewhere_highest_q6_q1_for_q3_right_down,
+                (),
+            )
+            (
+                highest_q6_q1_for_q3_right_down, lowest_q6_q1_for_q3_right_down, highest_q6_q1_for_q3_right_up,
+                lowest_q6_q1_for_q3_right_up,
+            ) = found
+            near_q6_q1_for_q3_right_down = atan2(
+                root((1.0 - highest_q6_q1_for_q3_right_down)*(1.0 + highest_q6_q1_for_q3_right_down)),
+                highest_q6_q1_for_q3_right_down,
+            )
+            far_q6_q1_for_q3_right_down = atan2(
+                root((1.0 - lowest_q6_q1_for_q3_right_down)*(1.0 + lowest_q6_q1_for_q3_right_down)),
+                lowest_q6_q1_for_q3_right_down,
+            )
+            centre_q6_q1_for_q3_right = atan2(across_q6_q1_for_q3_right, along_q6_q1_for_q3_right)
+            angle_q6_q1_for_q3_right_down = atan2(sin_q6_before_q1_for_q3_right_down, cos_q6_before_q1_for_q3_right_down)
+            side_q6_q1_for_q3_right_down = select(
+                (
+                    along_q6_q1_for_q3_right*sin_q6_before_q1_for_q3_right_down
+                    - across_q6_q1_for_q3_right*cos_q6_before_q1_for_q3_right_down >= 0.0
+                ),
+                1.0,
+                -1.0,
+            )
+            moved_q6_q1_for_q3_right_down = nearest_on_arc(
+                angle_q6_q1_for_q3_right_down,
+                (
+                    centre_q6_q1_for_q3_right
+                    + 0.5*(far_q6_q1_for_q3_right_down + near_q6_q1_for_q3_right_down)*side_q6_q1_for_q3_right_down
+                ),
+                0.5*far_q6_q1_for_q3_right_down - 0.5*near_q6_q1_for_q3_right_down,
+            )
+            near_cos_q6_q1_for_q3_right_down = cos(moved_q6_q1_for_q3_right_down)
+            near_sin_q6_q1_for_q3_right_down = sin(moved_q6_q1_for_q3_right_down)
+            near_q_q1_for_q3_right_down = near_cos_q6_q1_for_q3_right_down*r12 + near_sin_q6_q1_for_q3_right_down*r11
+            near_p_q1_for_q3_right_down = -near_cos_q6_q1_for_q3_right_down*r22 - near_sin_q6_q1_for_q3_right_down*r21
+            near_radius_q1_for_q3_right_down = sqrt(
+                near_p_q1_for_q3_right_down*near_p_q1_for_q3_right_down
+                + near_q_q1_for_q3_right_down*near_q_q1_for_q3_right_down
+            )
+            near_length_q1_for_q3_right_down = select(
+                near_radius_q1_for_q3_right_down > 1e-12, near_radius_q1_for_q3_right_down, 1.0,
+            )
+            near_along_q1_for_q3_right_down = (
+                (near_cos_q6_q1_for_q3_right_down*r11 - near_sin_q6_q1_for_q3_right_down*r12)*near_p_q1_for_q3_right_down
+                - (
+                    near_sin_q6_q1_for_q3_right_down*r22 - near_cos_q6_q1_for_q3_right_down*r21
+                )*near_q_q1_for_q3_right_down
+            )
+            near_side_q1_for_q3_right_down = select(near_along_q1_for_q3_right_down < 0.0, -1.0, 1.0)
+            # the earlier angle follows
+            near_cos_q1_for_q3_right_down = (
+                -near_q_q1_for_q3_right_down*near_side_q1_for_q3_right_down/near_length_q1_for_q3_right_down
+            )
+            near_sin_q1_for_q3_right_down = (
+                near_p_q1_for_q3_right_down*near_side_q1_for_q3_right_down/near_length_q1_for_q3_right_down
+            )
+            near_q6_q1_for_q3_right_up = atan2(
+                root((1.0 - highest_q6_q1_for_q3_right_up)*(1.0 + highest_q6_q1_for_q3_right_up)),
+                highest_q6_q1_for_q3_right_up,
+            )
+            far_q6_q1_for_q3_right_up = atan2(
+                root((1.0 - lowest_q6_q1_for_q3_right_up)*(1.0 + lowest_q6_q1_for_q3_right_up)),
+                lowest_q6_q1_for_q3_right_up,
+            )
+            angle_q6_q1_for_q3_right_up = atan2(sin_q6_before_q1_for_q3_right_up, cos_q6_before_q1_for_q3_right_up)
+            side_q6_q1_for_q3_right_up = select(
+                (
+                    along_q6_q1_for_q3_right*sin_q6_before_q1_for_q3_right_up
+                    - across_q6_q1_for_q3_right*cos_q6_before_q1_for_q3_right_up >= 0.0
+                ),
+                1.0,
+                -1.0,
+            )
+            moved_q6_q1_for_q3_right_up = nearest_on_arc(
+                angle_q6_q1_for_q3_right_up,
+                (
+                    centre_q6_q1_for_q3_right
+                    + 0.5*(far_q6_q1_for_q3_right_up + near_q6_q1_for_q3_right_up)*side_q6_q1_for_q3_right_up
+                ),
+                0.5*far_q6_q1_for_q3_right_up - 0.5*near_q6_q1_for_q3_right_up,
+            )
+            near_cos_q6_q1_for_q3_right_up = cos(moved_q6_q1_for_q3_right_up)
+            near_sin_q6_q1_for_q3_right_up = sin(moved_q6_q1_for_q3_right_up)
+            near_q_q1_for_q3_right_up = -near_cos_q6_q1_for_q3_right_up*r12 - near_sin_q6_q1_for_q3_right_up*r11
+            near_p_q1_for_q3_right_up = near_cos_q6_q1_for_q3_right_up*r22 + near_sin_q6_q1_for_q3_right_up*r21
+            near_radius_q1_for_q3_right_up = sqrt(
+                near_p_q1_for_q3_right_up*near_p_q1_for_q3_right_up + near_q_q1_for_q3_right_up*near_q_q1_for_q3_right_up
+            )
+            near_length_q1_for_q3_right_up = select(
+                near_radius_q1_for_q3_right_up > 1e-12, near_radius_q1_for_q3_right_up, 1.0,
+            )
+            near_along_q1_for_q3_right_up = (
+                (near_sin_q6_q1_for_q3_right_up*r12 - near_cos_q6_q1_for_q3_right_up*r11)*near_p_q1_for_q3_right_up
+                - (near_cos_q6_q1_for_q3_right_up*r21 - near_sin_q6_q1_for_q3_right_up*r22)*near_q_q1_for_q3_right_up
+            )
+            near_side_q1_for_q3_right_up = select(near_along_q1_for_q3_right_up < 0.0, -1.0, 1.0)
+            # the earlier angle follows
+            near_cos_q1_for_q3_right_up = (
+                -near_q_q1_for_q3_right_up*near_side_q1_for_q3_right_up/near_length_q1_for_q3_right_up
+            )
+            near_sin_q1_for_q3_right_up = (
+                near_p_q1_for_q3_right_up*near_side_q1_for_q3_right_up/near_length_q1_for_q3_right_up
+            )
+
+            def elsewhere_swept_cost_q1_for_q3_left_down_2(
+                near_cos_q1_for_q3_left_down: Real, near_cos_q1_for_q3_left_up: Real, near_cos_q1_for_q3_right_down: Real,
+                near_cos_q1_for_q3_right_up: Real, near_sin_q1_for_q3_left_down: Real, near_sin_q1_for_q3_left_up: Real,
+                near_sin_q1_for_q3_right_down: Real, near_sin_q1_for_q3_right_up: Real,
+            ) -> Reals:
+                swept_cost_q1_for_q3_left_down = 0.0
+                swept_cos_q1_for_q3_left_down = near_cos_q1_for_q3_left_down
+                swept_sin_q1_for_q3_left_down = near_sin_q1_for_q3_left_down
+                swept_cost_q1_for_q3_left_up = 0.0
+                swept_cos_q1_for_q3_left_up = near_cos_q1_for_q3_left_up
+                swept_sin_q1_for_q3_left_up = near_sin_q1_for_q3_left_up
+                swept_cost_q1_for_q3_right_down = 0.0
+                swept_cos_q1_for_q3_right_down = near_cos_q1_for_q3_right_down
+                swept_sin_q1_for_q3_right_down = near_sin_q1_for_q3_right_down
+                swept_cost_q1_for_q3_right_up = 0.0
+                swept_cos_q1_for_q3_right_up = near_cos_q1_for_q3_right_up
+                swept_sin_q1_for_q3_right_up = near_sin_q1_for_q3_right_up
+                return (
+                    swept_cost_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down,
+                    swept_cost_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up,
+                    swept_cost_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down,
+                    swept_cost_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up,
+                )
+
+            near_cost_q1_for_q3_left_down = absolute(
+                d4 + near_cos_q1_for_q3_left_down*wrist_y - near_sin_q1_for_q3_left_down*wrist_x
+            )
+            # the other way to the arc
+            mirrored_q6_q1_for_q3_left_down = 2.0*centre_q6_q1_for_q3_left - moved_q6_q1_for_q3_left_down
+            mirrored_cos_q6_q1_for_q3_left_down = cos(mirrored_q6_q1_for_q3_left_down)
+            mirrored_sin_q6_q1_for_q3_left_down = sin(mirrored_q6_q1_for_q3_left_down)
+            mirrored_q_q1_for_q3_left_down = (
+                mirrored_cos_q6_q1_for_q3_left_down*r12 + mirrored_sin_q6_q1_for_q3_left_down*r11
+            )
+            mirrored_p_q1_for_q3_left_down = (
+                -mirrored_cos_q6_q1_for_q3_left_down*r22 - mirrored_sin_q6_q1_for_q3_left_down*r21
+            )
+            mirrored_radius_q1_for_q3_left_down = sqrt(
+                mirrored_p_q1_for_q3_left_down*mirrored_p_q1_for_q3_left_down
+                + mirrored_q_q1_for_q3_left_down*mirrored_q_q1_for_q3_left_down
+            )
+            mirrored_length_q1_for_q3_left_down = select(
+                mirrored_radius_q1_for_q3_left_down > 1e-12, mirrored_radius_q1_for_q3_left_down, 1.0,
+            )
+            mirrored_along_q1_for_q3_left_down = (
+                (
+                    mirrored_cos_q6_q1_for_q3_left_down*r11 - mirrored_sin_q6_q1_for_q3_left_down*r12
+                )*mirrored_p_q1_for_q3_left_down
+                - (
+                    mirrored_sin_q6_q1_for_q3_left_down*r22 - mirrored_cos_q6_q1_for_q3_left_down*r21
+                )*mirrored_q_q1_for_q3_left_down
+            )
+            mirrored_side_q1_for_q3_left_down = select(mirrored_along_q1_for_q3_left_down < 0.0, -1.0, 1.0)
+            # the earlier angle follows
+            mirrored_cos_q1_for_q3_left_down = (
+                -mirrored_q_q1_for_q3_left_down*mirrored_side_q1_for_q3_left_down/mirrored_length_q1_for_q3_left_down
+            )
+            mirrored_sin_q1_for_q3_left_down = (
+                mirrored_p_q1_for_q3_left_down*mirrored_side_q1_for_q3_left_down/mirrored_length_q1_for_q3_left_down
+            )
+            mirrored_cost_q1_for_q3_left_down = absolute(
+                d4 + mirrored_cos_q1_for_q3_left_down*wrist_y - mirrored_sin_q1_for_q3_left_down*wrist_x
+            )
+
+            def elsewhere_swept_cost_q1_for_q3_left_down(
+                mirrored_cos_q1_for_q3_left_down: Real, mirrored_cost_q1_for_q3_left_down: Real,
+                mirrored_sin_q1_for_q3_left_down: Real,
+            ) -> Reals:
+                swept_cost_q1_for_q3_left_down = mirrored_cost_q1_for_q3_left_down
+                swept_cos_q1_for_q3_left_down = mirrored_cos_q1_for_q3_left_down
+                swept_sin_q1_for_q3_left_down = mirrored_sin_q1_for_q3_left_down
+                return (swept_cost_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down)
+
+            swept_cost_q1_for_q3_left_down = near_cost_q1_for_q3_left_down
+            swept_cos_q1_for_q3_left_down = near_cos_q1_for_q3_left_down
+            swept_sin_q1_for_q3_left_down = near_sin_q1_for_q3_left_down
+            swept_cost_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down = elsewhere(
+                near_cost_q1_for_q3_left_down <= mirrored_cost_q1_for_q3_left_down,
+                (swept_cost_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down),
+                elsewhere_swept_cost_q1_for_q3_left_down,
+                (mirrored_cos_q1_for_q3_left_down, mirrored_cost_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down),
+            )
+            near_cost_q1_for_q3_left_up = absolute(
+                d4 + near_cos_q1_for_q3_left_up*wrist_y - near_sin_q1_for_q3_left_up*wrist_x
+            )
+            # the other way to the arc
+            mirrored_q6_q1_for_q3_left_up = 2.0*centre_q6_q1_for_q3_left - moved_q6_q1_for_q3_left_up
+            mirrored_cos_q6_q1_for_q3_left_up = cos(mirrored_q6_q1_for_q3_left_up)
+            mirrored_sin_q6_q1_for_q3_left_up = sin(mirrored_q6_q1_for_q3_left_up)
+            mirrored_q_q1_for_q3_left_up = -mirrored_cos_q6_q1_for_q3_left_up*r12 - mirrored_sin_q6_q1_for_q3_left_up*r11
+            mirrored_p_q1_for_q3_left_up = mirrored_cos_q6_q1_for_q3_left_up*r22 + mirrored_sin_q6_q1_for_q3_left_up*r21
+            mirrored_radius_q1_for_q3_left_up = sqrt(
+                mirrored_p_q1_for_q3_left_up*mirrored_p_q1_for_q3_left_up
+                + mirrored_q_q1_for_q3_left_up*mirrored_q_q1_for_q3_left_up
+            )
+            mirrored_length_q1_for_q3_left_up = select(
+                mirrored_radius_q1_for_q3_left_up > 1e-12, mirrored_radius_q1_for_q3_left_up, 1.0,
+            )
+            mirrored_along_q1_for_q3_left_up = (
+                (
+                    mirrored_sin_q6_q1_for_q3_left_up*r12 - mirrored_cos_q6_q1_for_q3_left_up*r11
+                )*mirrored_p_q1_for_q3_left_up
+                - (
+                    mirrored_cos_q6_q1_for_q3_left_up*r21 - mirrored_sin_q6_q1_for_q3_left_up*r22
+                )*mirrored_q_q1_for_q3_left_up
+            )
+            mirrored_side_q1_for_q3_left_up = select(mirrored_along_q1_for_q3_left_up < 0.0, -1.0, 1.0)
+            # the earlier angle follows
+            mirrored_cos_q1_for_q3_left_up = (
+                -mirrored_q_q1_for_q3_left_up*mirrored_side_q1_for_q3_left_up/mirrored_length_q1_for_q3_left_up
+            )
+            mirrored_sin_q1_for_q3_left_up = (
+                mirrored_p_q1_for_q3_left_up*mirrored_side_q1_for_q3_left_up/mirrored_length_q1_for_q3_left_up
+            )
+            mirrored_cost_q1_for_q3_left_up = absolute(
+                d4 + mirrored_cos_q1_for_q3_left_up*wrist_y - mirrored_sin_q1_for_q3_left_up*wrist_x
+            )
+
+            def elsewhere_swept_cost_q1_for_q3_left_up(
+                mirrored_cos_q1_for_q3_left_up: Real, mirrored_cost_q1_for_q3_left_up: Real,
+                mirrored_sin_q1_for_q3_left_up: Real,
+            ) -> Reals:
+                swept_cost_q1_for_q3_left_up = mirrored_cost_q1_for_q3_left_up
+                swept_cos_q1_for_q3_left_up = mirrored_cos_q1_for_q3_left_up
+                swept_sin_q1_for_q3_left_up = mirrored_sin_q1_for_q3_left_up
+                return (swept_cost_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up)
+
+            swept_cost_q1_for_q3_left_up = near_cost_q1_for_q3_left_up
+            swept_cos_q1_for_q3_left_up = near_cos_q1_for_q3_left_up
+            swept_sin_q1_for_q3_left_up = near_sin_q1_for_q3_left_up
+            swept_cost_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up = elsewhere(
+                near_cost_q1_for_q3_left_up <= mirrored_cost_q1_for_q3_left_up,
+                (swept_cost_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up),
+                elsewhere_swept_cost_q1_for_q3_left_up,
+                (mirrored_cos_q1_for_q3_left_up, mirrored_cost_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up),
+            )
+            near_cost_q1_for_q3_right_down = absolute(
+                d4 + near_cos_q1_for_q3_right_down*wrist_y - near_sin_q1_for_q3_right_down*wrist_x
+            )
+            # the other way to the arc
+            mirrored_q6_q1_for_q3_right_down = 2.0*centre_q6_q1_for_q3_right - moved_q6_q1_for_q3_right_down
+            mirrored_cos_q6_q1_for_q3_right_down = cos(mirrored_q6_q1_for_q3_right_down)
+            mirrored_sin_q6_q1_for_q3_right_down = sin(mirrored_q6_q1_for_q3_right_down)
+            mirrored_q_q1_for_q3_right_down = (
+                mirrored_cos_q6_q1_for_q3_right_down*r12 + mirrored_sin_q6_q1_for_q3_right_down*r11
+            )
+            mirrored_p_q1_for_q3_right_down = (
+                -mirrored_cos_q6_q1_for_q3_right_down*r22 - mirrored_sin_q6_q1_for_q3_right_down*r21
+            )
+            mirrored_radius_q1_for_q3_right_down = sqrt(
+                mirrored_p_q1_for_q3_right_down*mirrored_p_q1_for_q3_right_down
+                + mirrored_q_q1_for_q3_right_down*mirrored_q_q1_for_q3_right_down
+            )
+            mirrored_length_q1_for_q3_right_down = select(
+                mirrored_radius_q1_for_q3_right_down > 1e-12, mirrored_radius_q1_for_q3_right_down, 1.0,
+            )
+            mirrored_along_q1_for_q3_right_down = (
+                (
+                    mirrored_cos_q6_q1_for_q3_right_down*r11 - mirrored_sin_q6_q1_for_q3_right_down*r12
+                )*mirrored_p_q1_for_q3_right_down
+                - (
+                    mirrored_sin_q6_q1_for_q3_right_down*r22 - mirrored_cos_q6_q1_for_q3_right_down*r21
+                )*mirrored_q_q1_for_q3_right_down
+            )
+            mirrored_side_q1_for_q3_right_down = select(mirrored_along_q1_for_q3_right_down < 0.0, -1.0, 1.0)
+            # the earlier angle follows
+            mirrored_cos_q1_for_q3_right_down = (
+                -mirrored_q_q1_for_q3_right_down*mirrored_side_q1_for_q3_right_down/mirrored_length_q1_for_q3_right_down
+            )
+            mirrored_sin_q1_for_q3_right_down = (
+                mirrored_p_q1_for_q3_right_down*mirrored_side_q1_for_q3_right_down/mirrored_length_q1_for_q3_right_down
+            )
+            mirrored_cost_q1_for_q3_right_down = absolute(
+                d4 + mirrored_cos_q1_for_q3_right_down*wrist_y - mirrored_sin_q1_for_q3_right_down*wrist_x
+            )
+
+            def elsewhere_swept_cost_q1_for_q3_right_down(
+                mirrored_cos_q1_for_q3_right_down: Real, mirrored_cost_q1_for_q3_right_down: Real,
+                mirrored_sin_q1_for_q3_right_down: Real,
+            ) -> Reals:
+                swept_cost_q1_for_q3_right_down = mirrored_cost_q1_for_q3_right_down
+                swept_cos_q1_for_q3_right_down = mirrored_cos_q1_for_q3_right_down
+                swept_sin_q1_for_q3_right_down = mirrored_sin_q1_for_q3_right_down
+                return (swept_cost_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down)
+
+            swept_cost_q1_for_q3_right_down = near_cost_q1_for_q3_right_down
+            swept_cos_q1_for_q3_right_down = near_cos_q1_for_q3_right_down
+            swept_sin_q1_for_q3_right_down = near_sin_q1_for_q3_right_down
+            swept_cost_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down = elsewhere(
+                near_cost_q1_for_q3_right_down <= mirrored_cost_q1_for_q3_right_down,
+                (swept_cost_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down),
+                elsewhere_swept_cost_q1_for_q3_right_down,
+                (
+                    mirrored_cos_q1_for_q3_right_down, mirrored_cost_q1_for_q3_right_down,
+                    mirrored_sin_q1_for_q3_right_down,
+                ),
+            )
+            near_cost_q1_for_q3_right_up = absolute(
+                d4 + near_cos_q1_for_q3_right_up*wrist_y - near_sin_q1_for_q3_right_up*wrist_x
+            )
+            # the other way to the arc
+            mirrored_q6_q1_for_q3_right_up = 2.0*centre_q6_q1_for_q3_right - moved_q6_q1_for_q3_right_up
+            mirrored_cos_q6_q1_for_q3_right_up = cos(mirrored_q6_q1_for_q3_right_up)
+            mirrored_sin_q6_q1_for_q3_right_up = sin(mirrored_q6_q1_for_q3_right_up)
+            mirrored_q_q1_for_q3_right_up = (
+                -mirrored_cos_q6_q1_for_q3_right_up*r12 - mirrored_sin_q6_q1_for_q3_right_up*r11
+            )
+            mirrored_p_q1_for_q3_right_up = (
+                mirrored_cos_q6_q1_for_q3_right_up*r22 + mirrored_sin_q6_q1_for_q3_right_up*r21
+            )
+            mirrored_radius_q1_for_q3_right_up = sqrt(
+                mirrored_p_q1_for_q3_right_up*mirrored_p_q1_for_q3_right_up
+                + mirrored_q_q1_for_q3_right_up*mirrored_q_q1_for_q3_right_up
+            )
+            mirrored_length_q1_for_q3_right_up = select(
+                mirrored_radius_q1_for_q3_right_up > 1e-12, mirrored_radius_q1_for_q3_right_up, 1.0,
+            )
+            mirrored_along_q1_for_q3_right_up = (
+                (
+                    mirrored_sin_q6_q1_for_q3_right_up*r12 - mirrored_cos_q6_q1_for_q3_right_up*r11
+                )*mirrored_p_q1_for_q3_right_up
+                - (
+                    mirrored_cos_q6_q1_for_q3_right_up*r21 - mirrored_sin_q6_q1_for_q3_right_up*r22
+                )*mirrored_q_q1_for_q3_right_up
+            )
+            mirrored_side_q1_for_q3_right_up = select(mirrored_along_q1_for_q3_right_up < 0.0, -1.0, 1.0)
+            # the earlier angle follows
+            mirrored_cos_q1_for_q3_right_up = (
+                -mirrored_q_q1_for_q3_right_up*mirrored_side_q1_for_q3_right_up/mirrored_length_q1_for_q3_right_up
+            )
+            mirrored_sin_q1_for_q3_right_up = (
+                mirrored_p_q1_for_q3_right_up*mirrored_side_q1_for_q3_right_up/mirrored_length_q1_for_q3_right_up
+            )
+            mirrored_cost_q1_for_q3_right_up = absolute(
+                d4 + mirrored_cos_q1_for_q3_right_up*wrist_y - mirrored_sin_q1_for_q3_right_up*wrist_x
+            )
+
+            def elsewhere_swept_cost_q1_for_q3_right_up(
+                mirrored_cos_q1_for_q3_right_up: Real, mirrored_cost_q1_for_q3_right_up: Real,
+                mirrored_sin_q1_for_q3_right_up: Real,
+            ) -> Reals:
+                swept_cost_q1_for_q3_right_up = mirrored_cost_q1_for_q3_right_up
+                swept_cos_q1_for_q3_right_up = mirrored_cos_q1_for_q3_right_up
+                swept_sin_q1_for_q3_right_up = mirrored_sin_q1_for_q3_right_up
+                return (swept_cost_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up)
+
+            swept_cost_q1_for_q3_right_up = near_cost_q1_for_q3_right_up
+            swept_cos_q1_for_q3_right_up = near_cos_q1_for_q3_right_up
+            swept_sin_q1_for_q3_right_up = near_sin_q1_for_q3_right_up
+            swept_cost_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up = elsewhere(
+                near_cost_q1_for_q3_right_up <= mirrored_cost_q1_for_q3_right_up,
+                (swept_cost_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up),
+                elsewhere_swept_cost_q1_for_q3_right_up,
+                (mirrored_cos_q1_for_q3_right_up, mirrored_cost_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up),
+            )
+            found = elsewhere(
+                distance_q1 > 1e-11*machine_scale,
+                (
+                    swept_cost_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down,
+                    swept_cost_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up,
+                    swept_cost_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down,
+                    swept_cost_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up,
+                ),
+                elsewhere_swept_cost_q1_for_q3_left_down_2,
+                (
+                    near_cos_q1_for_q3_left_down, near_cos_q1_for_q3_left_up, near_cos_q1_for_q3_right_down,
+                    near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_left_down, near_sin_q1_for_q3_left_up,
+                    near_sin_q1_for_q3_right_down, near_sin_q1_for_q3_right_up,
+                ),
+            )
+            (
+                swept_cost_q1_for_q3_left_down, swept_cos_q1_for_q3_left_down, swept_sin_q1_for_q3_left_down,
+                swept_cost_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up,
+                swept_cost_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down,
+                swept_cost_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up,
+            ) = found
+
+            def elsewhere_ahead_q1_left_down(
+                ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
+                follows_q1_for_q3_left_down: Real, sin_q1_before_q1_for_q3_left: Real,
+                swept_cos_q1_for_q3_left_down: Real, swept_cost_q1_for_q3_left_down: Real,
+                swept_sin_q1_for_q3_left_down: Real, turn_q1_for_q3_left_down: Real, turned_cos_q1_for_q3_left_down: Real,
+                turned_cost_q1_for_q3_left_down: Real, turned_length_q1_for_q3_left_down: Real,
+                turned_sin_q1_for_q3_left_down: Real, wrist_x: Real, wrist_y: Real,
+            ) -> Reals:
+
+                def elsewhere_best_cost_q1_for_q3_left_down(
+                    ahead_q1_before_q1_for_q3_right: Real, turn_q1_for_q3_left_down: Real,
+                    turned_cos_q1_for_q3_left_down: Real, turned_cost_q1_for_q3_left_down: Real,
+                    turned_length_q1_for_q3_left_down: Real, turned_sin_q1_for_q3_left_down: Real,
+                ) -> Reals:
+                    best_cost_q1_for_q3_left_down = turned_cost_q1_for_q3_left_down
+                    turned_ahead_q1_for_q3_left_down = (
+                        (-ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_left_down)
+                        /turned_length_q1_for_q3_left_down
+                    )
+                    best_ahead_q1_for_q3_left_down = turned_ahead_q1_for_q3_left_down
+                    best_cos_q1_for_q3_left_down = turned_cos_q1_for_q3_left_down
+                    best_sin_q1_for_q3_left_down = turned_sin_q1_for_q3_left_down
+                    return (
+                        best_cost_q1_for_q3_left_down, best_ahead_q1_for_q3_left_down, best_cos_q1_for_q3_left_down,
+                        best_sin_q1_for_q3_left_down,
+                    )
+
+                best_cost_q1_for_q3_left_down = swept_cost_q1_for_q3_left_down
+                swept_ahead_q1_for_q3_left_down = (
+                    swept_cos_q1_for_q3_left_down*wrist_x + swept_sin_q1_for_q3_left_down*wrist_y
+                )
+                best_ahead_q1_for_q3_left_down = swept_ahead_q1_for_q3_left_down
+                best_cos_q1_for_q3_left_down = swept_cos_q1_for_q3_left_down
+                best_sin_q1_for_q3_left_down = swept_sin_q1_for_q3_left_down
+                found = elsewhere(
+                    follows_q1_for_q3_left_down > 0.0,
+                    (
+                        best_cost_q1_for_q3_left_down, best_ahead_q1_for_q3_left_down, best_cos_q1_for_q3_left_down,
+                        best_sin_q1_for_q3_left_down,
+                    ),
+                    elsewhere_best_cost_q1_for_q3_left_down,
+                    (
+                        ahead_q1_before_q1_for_q3_right, turn_q1_for_q3_left_down, turned_cos_q1_for_q3_left_down,
+                        turned_cost_q1_for_q3_left_down, turned_length_q1_for_q3_left_down, turned_sin_q1_for_q3_left_down,
+                    ),
+                )
+                (
+                    best_cost_q1_for_q3_left_down, best_ahead_q1_for_q3_left_down, best_cos_q1_for_q3_left_down,
+                    best_sin_q1_for_q3_left_down,
+                ) = found
+
+                def elsewhere_ahead_q1_left_down(
+                    best_ahead_q1_for_q3_left_down: Real, best_cos_q1_for_q3_left_down: Real,
+                    best_sin_q1_for_q3_left_down: Real,
+                ) -> Reals:
+                    ahead_q1_left_down = best_ahead_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
+                    cos_q1_left_down = best_cos_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
+                    sin_q1_left_down = best_sin_q1_for_q3_left_down  # turned within rounding, where the rest can be reached
+                    return (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down)
+
+                ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+                sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+                ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down = elsewhere(
+                    best_cost_q1_for_q3_left_down > 1e-12*machine_scale,
+                    (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down),
+                    elsewhere_ahead_q1_left_down,
+                    (best_ahead_q1_for_q3_left_down, best_cos_q1_for_q3_left_down, best_sin_q1_for_q3_left_down),
+                )
+                return (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down)
+
+            ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+            sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+            ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down = elsewhere(
+                absolute(value_q1_for_q3_left_down) <= size_q1_for_q3,
+                (ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down),
+                elsewhere_ahead_q1_left_down,
+                (
+                    ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, follows_q1_for_q3_left_down,
+                    sin_q1_before_q1_for_q3_left, swept_cos_q1_for_q3_left_down, swept_cost_q1_for_q3_left_down,
+                    swept_sin_q1_for_q3_left_down, turn_q1_for_q3_left_down, turned_cos_q1_for_q3_left_down,
+                    turned_cost_q1_for_q3_left_down, turned_length_q1_for_q3_left_down, turned_sin_q1_for_q3_left_down,
+                    wrist_x, wrist_y,
+                ),
+            )
+
+            def elsewhere_ahead_q1_left_up(
+                ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
+                cos_q5_before_q1_for_q3_left: Real, cos_q6_rate_q1_for_q3_left_up: Real,
+                r21_from_q1_before_q6_before_q1_for_q3_left_up: Real, r21_from_q1_rate_q1_for_q3_left: Real,
+                r22_from_q1_rate_q1_for_q3_left: Real, r23_from_q1_rate_q1_for_q3_left: Real, r31: Real, r32: Real,
+                r33: Real, radius_q6_before_q1_for_q3_left: Real, radius_q6_rate_q1_for_q3_left: Real,
+                sin_q1_before_q1_for_q3_left: Real, sin_q6_rate_q1_for_q3_left_up: Real,
+                swept_cos_q1_for_q3_left_up: Real, swept_cost_q1_for_q3_left_up: Real, swept_sin_q1_for_q3_left_up: Real,
+                value_q1_for_q3_left_up: Real, wrist_x: Real, wrist_x_from_q1_before_q1_for_q3_left_up: Real,
+                wrist_y: Real, wrist_y_from_q1_before_q1_for_q3_left_up: Real,
+            ) -> Reals:
+                r21_from_q1_before_q6_rate_q1_for_q3_left_up = (
+                    r31*cos_q6_rate_q1_for_q3_left_up - r32*sin_q6_rate_q1_for_q3_left_up
+                )
+                r21_from_q1_before_q56_rate_q1_for_q3_left_up = (
+                    r21_from_q1_before_q6_rate_q1_for_q3_left_up*cos_q5_before_q1_for_q3_left
+                    + r33*radius_q6_rate_q1_for_q3_left
+                    - r21_from_q1_before_q6_before_q1_for_q3_left_up*r23_from_q1_rate_q1_for_q3_left
+                )
+                wrist_x_from_q1_rate_q1_for_q3_left_up = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3_left_up
+                r22_from_q1_before_q6_rate_q1_for_q3_left_up = (
+                    r32*cos_q6_rate_q1_for_q3_left_up + r31*sin_q6_rate_q1_for_q3_left_up
+                )
+                wrist_y_from_q1_rate_q1_for_q3_left_up = d5*r22_from_q1_before_q6_rate_q1_for_q3_left_up
+                # how it changes with q1
+                rate_q1_for_q3_left_up = (
+                    2.0*wrist_x_from_q1_before_q1_for_q3_left_up*wrist_x_from_q1_rate_q1_for_q3_left_up
+                    + 2.0*wrist_y_from_q1_before_q1_for_q3_left_up*wrist_y_from_q1_rate_q1_for_q3_left_up
+                )
+                swept_ahead_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up*wrist_x + swept_sin_q1_for_q3_left_up*wrist_y
+
+                def elsewhere_best_cost_q1_for_q3_left_up_2(
+                    swept_ahead_q1_for_q3_left_up: Real, swept_cos_q1_for_q3_left_up: Real,
+                    swept_cost_q1_for_q3_left_up: Real, swept_sin_q1_for_q3_left_up: Real,
+                ) -> Reals:
+                    best_cost_q1_for_q3_left_up = swept_cost_q1_for_q3_left_up
+                    best_ahead_q1_for_q3_left_up = swept_ahead_q1_for_q3_left_up
+                    best_cos_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up
+                    best_sin_q1_for_q3_left_up = swept_sin_q1_for_q3_left_up
+                    return (
+                        best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
+                        best_sin_q1_for_q3_left_up,
+                    )
+
+                excess_q1_for_q3_left_up = select(
+                    value_q1_for_q3_left_up > 0.0, value_q1_for_q3_left_up - size_q1_for_q3,
+                    size_q1_for_q3 + value_q1_for_q3_left_up,
+                )
+                turn_q1_for_q3_left_up = -excess_q1_for_q3_left_up/rate_q1_for_q3_left_up  # to the boundary of the later step
+
+                def elsewhere_best_cost_q1_for_q3_left_up(
+                    ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_left: Real,
+                    sin_q1_before_q1_for_q3_left: Real, turn_q1_for_q3_left_up: Real, wrist_x: Real, wrist_y: Real,
+                ) -> Reals:
+                    turned_length_q1_for_q3_left_up = root(1.0 + turn_q1_for_q3_left_up*turn_q1_for_q3_left_up)
+                    turned_cos_q1_for_q3_left_up = (
+                        (cos_q1_before_q1_for_q3_left - turn_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left)
+                        /turned_length_q1_for_q3_left_up
+                    )
+                    turned_sin_q1_for_q3_left_up = (
+                        (sin_q1_before_q1_for_q3_left + turn_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left)
+                        /turned_length_q1_for_q3_left_up
+                    )
+                    # what is left of its own equation
+                    turned_cost_q1_for_q3_left_up = absolute(
+                        d4 + turned_cos_q1_for_q3_left_up*wrist_y - turned_sin_q1_for_q3_left_up*wrist_x
+                    )
+                    best_cost_q1_for_q3_left_up = turned_cost_q1_for_q3_left_up
+                    turned_ahead_q1_for_q3_left_up = (
+                        (-ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_left_up)
+                        /turned_length_q1_for_q3_left_up
+                    )
+                    best_ahead_q1_for_q3_left_up = turned_ahead_q1_for_q3_left_up
+                    best_cos_q1_for_q3_left_up = turned_cos_q1_for_q3_left_up
+                    best_sin_q1_for_q3_left_up = turned_sin_q1_for_q3_left_up
+                    return (
+                        best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
+                        best_sin_q1_for_q3_left_up,
+                    )
+
+                best_cost_q1_for_q3_left_up = swept_cost_q1_for_q3_left_up
+                best_ahead_q1_for_q3_left_up = swept_ahead_q1_for_q3_left_up
+                best_cos_q1_for_q3_left_up = swept_cos_q1_for_q3_left_up
+                best_sin_q1_for_q3_left_up = swept_sin_q1_for_q3_left_up
+                found = elsewhere(
+                    (
+                        (turn_q1_for_q3_left_up*turn_q1_for_q3_left_up > 1e-12)
+                        | (
+                            (
+                                r21_from_q1_rate_q1_for_q3_left*r21_from_q1_rate_q1_for_q3_left
+                                + r22_from_q1_rate_q1_for_q3_left*r22_from_q1_rate_q1_for_q3_left
+                            )
+                            *turn_q1_for_q3_left_up*turn_q1_for_q3_left_up > 1e-12*radius_q6_before_q1_for_q3_left
+                            *radius_q6_before_q1_for_q3_left
+                        )
+                    ),
+                    (
+                        best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
+                        best_sin_q1_for_q3_left_up,
+                    ),
+                    elsewhere_best_cost_q1_for_q3_left_up,
+                    (
+                        ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left,
+                        turn_q1_for_q3_left_up, wrist_x, wrist_y,
+                    ),
+                )
+                (
+                    best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
+                    best_sin_q1_for_q3_left_up,
+                ) = found
+                found = elsewhere(
+                    absolute(rate_q1_for_q3_left_up) > 1e-12*size_q1_for_q3,
+                    (
+                        best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
+                        best_sin_q1_for_q3_left_up,
+                    ),
+                    elsewhere_best_cost_q1_for_q3_left_up_2,
+                    (
+                        swept_ahead_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up, swept_cost_q1_for_q3_left_up,
+                        swept_sin_q1_for_q3_left_up,
+                    ),
+                )
+                (
+                    best_cost_q1_for_q3_left_up, best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up,
+                    best_sin_q1_for_q3_left_up,
+                ) = found
+
+                def elsewhere_ahead_q1_left_up(
+                    best_ahead_q1_for_q3_left_up: Real, best_cos_q1_for_q3_left_up: Real, best_sin_q1_for_q3_left_up: Real,
+                ) -> Reals:
+                    ahead_q1_left_up = best_ahead_q1_for_q3_left_up  # turned within rounding, where the rest can be reached
+                    cos_q1_left_up = best_cos_q1_for_q3_left_up  # turned within rounding, where the rest can be reached
+                    sin_q1_left_up = best_sin_q1_for_q3_left_up  # turned within rounding, where the rest can be reached
+                    return (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up)
+
+                ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+                sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+                ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up = elsewhere(
+                    best_cost_q1_for_q3_left_up > 1e-12*machine_scale,
+                    (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up),
+                    elsewhere_ahead_q1_left_up,
+                    (best_ahead_q1_for_q3_left_up, best_cos_q1_for_q3_left_up, best_sin_q1_for_q3_left_up),
+                )
+                return (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up)
+
+            ahead_q1_left_up = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+            sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+            ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up = elsewhere(
+                absolute(value_q1_for_q3_left_up) <= size_q1_for_q3,
+                (ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up),
+                elsewhere_ahead_q1_left_up,
+                (
+                    ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, cos_q5_before_q1_for_q3_left,
+                    cos_q6_rate_q1_for_q3_left_up, r21_from_q1_before_q6_before_q1_for_q3_left_up,
+                    r21_from_q1_rate_q1_for_q3_left, r22_from_q1_rate_q1_for_q3_left, r23_from_q1_rate_q1_for_q3_left,
+                    r31, r32, r33, radius_q6_before_q1_for_q3_left, radius_q6_rate_q1_for_q3_left,
+                    sin_q1_before_q1_for_q3_left, sin_q6_rate_q1_for_q3_left_up, swept_cos_q1_for_q3_left_up,
+                    swept_cost_q1_for_q3_left_up, swept_sin_q1_for_q3_left_up, value_q1_for_q3_left_up, wrist_x,
+                    wrist_x_from_q1_before_q1_for_q3_left_up, wrist_y, wrist_y_from_q1_before_q1_for_q3_left_up,
+                ),
+            )
+            r23_from_q1_rate_q1_for_q3_right = -r13*cos_q1_before_q1_for_q3_right - r23*sin_q1_before_q1_for_q3_right
+            r21_from_q1_rate_q1_for_q3_right = -r11*cos_q1_before_q1_for_q3_right - r21*sin_q1_before_q1_for_q3_right
+            r22_from_q1_rate_q1_for_q3_right = -r12*cos_q1_before_q1_for_q3_right - r22*sin_q1_before_q1_for_q3_right
+
+            def elsewhere_radius_q6_rate_q1_for_q3_right() -> Reals:
+                radius_q6_rate_q1_for_q3_right = 0.0
+                cos_q6_rate_q1_for_q3_right_down = 0.0
+                sin_q6_rate_q1_for_q3_right_down = 0.0
+                cos_q6_rate_q1_for_q3_right_up = 0.0
+                sin_q6_rate_q1_for_q3_right_up = 0.0
+                return (
+                    radius_q6_rate_q1_for_q3_right, cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down,
+                    cos_q6_rate_q1_for_q3_right_up, sin_q6_rate_q1_for_q3_right_up,
+                )
+
+            radius_q6_rate_q1_for_q3_right = (
+                0.5
+                *(
+                    2.0*r21_from_q1_before_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
+                    + 2.0*r22_from_q1_before_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
+                )
+                /radius_q6_before_q1_for_q3_right
+            )
+
+            def elsewhere_cos_q6_rate_q1_for_q3_right_down() -> Reals:
+                cos_q6_rate_q1_for_q3_right_down = 0.0
+                sin_q6_rate_q1_for_q3_right_down = 0.0
+                cos_q6_rate_q1_for_q3_right_up = 0.0
+                sin_q6_rate_q1_for_q3_right_up = 0.0
+                return (
+                    cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down, cos_q6_rate_q1_for_q3_right_up,
+                    sin_q6_rate_q1_for_q3_right_up,
+                )
+
+            cos_q6_rate_q1_for_q3_right_down = (
+                r21_from_q1_before_q1_for_q3_right*radius_q6_rate_q1_for_q3_right/(
+                    length_q6_before_q1_for_q3_right*length_q6_before_q1_for_q3_right
+                )
+                - r21_from_q1_rate_q1_for_q3_right/length_q6_before_q1_for_q3_right
+            )
+            sin_q6_rate_q1_for_q3_right_down = (
+                r22_from_q1_rate_q1_for_q3_right/length_q6_before_q1_for_q3_right
+                - r22_from_q1_before_q1_for_q3_right*radius_q6_rate_q1_for_q3_right/(
+                    length_q6_before_q1_for_q3_right*length_q6_before_q1_for_q3_right
+                )
+            )
+            cos_q6_rate_q1_for_q3_right_up = -cos_q6_rate_q1_for_q3_right_down
+            sin_q6_rate_q1_for_q3_right_up = -sin_q6_rate_q1_for_q3_right_down
+            found = elsewhere(
+                radius_q6_before_q1_for_q3_right > 1e-11,
+                (
+                    cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down, cos_q6_rate_q1_for_q3_right_up,
+                    sin_q6_rate_q1_for_q3_right_up,
+                ),
+                elsewhere_cos_q6_rate_q1_for_q3_right_down,
+                (),
+            )
+            (
+                cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down, cos_q6_rate_q1_for_q3_right_up,
+                sin_q6_rate_q1_for_q3_right_up,
+            ) = found
+            found = elsewhere(
+                radius_q6_before_q1_for_q3_right > 0.0,
+                (
+                    radius_q6_rate_q1_for_q3_right, cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down,
+                    cos_q6_rate_q1_for_q3_right_up, sin_q6_rate_q1_for_q3_right_up,
+                ),
+                elsewhere_radius_q6_rate_q1_for_q3_right,
+                (),
+            )
+            (
+                radius_q6_rate_q1_for_q3_right, cos_q6_rate_q1_for_q3_right_down, sin_q6_rate_q1_for_q3_right_down,
+                cos_q6_rate_q1_for_q3_right_up, sin_q6_rate_q1_for_q3_right_up,
+            ) = found
+
+            def elsewhere_ahead_q1_right_down(
+                ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
+                cos_q5_before_q1_for_q3_right: Real, cos_q6_rate_q1_for_q3_right_down: Real,
+                r21_from_q1_before_q6_before_q1_for_q3_right_down: Real, r21_from_q1_rate_q1_for_q3_right: Real,
+                r22_from_q1_rate_q1_for_q3_right: Real, r23_from_q1_rate_q1_for_q3_right: Real, r31: Real, r32: Real,
+                r33: Real, radius_q6_before_q1_for_q3_right: Real, radius_q6_rate_q1_for_q3_right: Real,
+                sin_q1_before_q1_for_q3_right: Real, sin_q6_rate_q1_for_q3_right_down: Real,
+                swept_cos_q1_for_q3_right_down: Real, swept_cost_q1_for_q3_right_down: Real,
+                swept_sin_q1_for_q3_right_down: Real, value_q1_for_q3_right_down: Real, wrist_x: Real,
+                wrist_x_from_q1_before_q1_for_q3_right_down: Real, wrist_y: Real,
+                wrist_y_from_q1_before_q1_for_q3_right_down: Real,
+            ) -> Reals:
+                r21_from_q1_before_q6_rate_q1_for_q3_right_down = (
+                    r31*cos_q6_rate_q1_for_q3_right_down - r32*sin_q6_rate_q1_for_q3_right_down
+                )
+                r21_from_q1_before_q56_rate_q1_for_q3_right_down = (
+                    r21_from_q1_before_q6_rate_q1_for_q3_right_down*cos_q5_before_q1_for_q3_right
+                    - r21_from_q1_before_q6_before_q1_for_q3_right_down*r23_from_q1_rate_q1_for_q3_right
+                    - r33*radius_q6_rate_q1_for_q3_right
+                )
+                wrist_x_from_q1_rate_q1_for_q3_right_down = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3_right_down
+                r22_from_q1_before_q6_rate_q1_for_q3_right_down = (
+                    r32*cos_q6_rate_q1_for_q3_right_down + r31*sin_q6_rate_q1_for_q3_right_down
+                )
+                wrist_y_from_q1_rate_q1_for_q3_right_down = d5*r22_from_q1_before_q6_rate_q1_for_q3_right_down
+                # how it changes with q1
+                rate_q1_for_q3_right_down = (
+                    2.0*wrist_x_from_q1_before_q1_for_q3_right_down*wrist_x_from_q1_rate_q1_for_q3_right_down
+                    + 2.0*wrist_y_from_q1_before_q1_for_q3_right_down*wrist_y_from_q1_rate_q1_for_q3_right_down
+                )
+                swept_ahead_q1_for_q3_right_down = (
+                    swept_cos_q1_for_q3_right_down*wrist_x + swept_sin_q1_for_q3_right_down*wrist_y
+                )
+
+                def elsewhere_best_cost_q1_for_q3_right_down_2(
+                    swept_ahead_q1_for_q3_right_down: Real, swept_cos_q1_for_q3_right_down: Real,
+                    swept_cost_q1_for_q3_right_down: Real, swept_sin_q1_for_q3_right_down: Real,
+                ) -> Reals:
+                    best_cost_q1_for_q3_right_down = swept_cost_q1_for_q3_right_down
+                    best_ahead_q1_for_q3_right_down = swept_ahead_q1_for_q3_right_down
+                    best_cos_q1_for_q3_right_down = swept_cos_q1_for_q3_right_down
+                    best_sin_q1_for_q3_right_down = swept_sin_q1_for_q3_right_down
+                    return (
+                        best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
+                        best_sin_q1_for_q3_right_down,
+                    )
+
+                excess_q1_for_q3_right_down = select(
+                    value_q1_for_q3_right_down > 0.0, value_q1_for_q3_right_down - size_q1_for_q3,
+                    size_q1_for_q3 + value_q1_for_q3_right_down,
+                )
+                # to the boundary of the later step
+                turn_q1_for_q3_right_down = -excess_q1_for_q3_right_down/rate_q1_for_q3_right_down
+
+                def elsewhere_best_cost_q1_for_q3_right_down(
+                    ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
+                    sin_q1_before_q1_for_q3_right: Real, turn_q1_for_q3_right_down: Real, wrist_x: Real, wrist_y: Real,
+                ) -> Reals:
+                    turned_length_q1_for_q3_right_down = root(1.0 + turn_q1_for_q3_right_down*turn_q1_for_q3_right_down)
+                    turned_cos_q1_for_q3_right_down = (
+                        (cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right)
+                        /turned_length_q1_for_q3_right_down
+                    )
+                    turned_sin_q1_for_q3_right_down = (
+                        (sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right)
+                        /turned_length_q1_for_q3_right_down
+                    )
+                    # what is left of its own equation
+                    turned_cost_q1_for_q3_right_down = absolute(
+                        d4 + turned_cos_q1_for_q3_right_down*wrist_y - turned_sin_q1_for_q3_right_down*wrist_x
+                    )
+                    best_cost_q1_for_q3_right_down = turned_cost_q1_for_q3_right_down
+                    turned_ahead_q1_for_q3_right_down = (
+                        (ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_right_down)/turned_length_q1_for_q3_right_down
+                    )
+                    best_ahead_q1_for_q3_right_down = turned_ahead_q1_for_q3_right_down
+                    best_cos_q1_for_q3_right_down = turned_cos_q1_for_q3_right_down
+                    best_sin_q1_for_q3_right_down = turned_sin_q1_for_q3_right_down
+                    return (
+                        best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
+                        best_sin_q1_for_q3_right_down,
+                    )
+
+                best_cost_q1_for_q3_right_down = swept_cost_q1_for_q3_right_down
+                best_ahead_q1_for_q3_right_down = swept_ahead_q1_for_q3_right_down
+                best_cos_q1_for_q3_right_down = swept_cos_q1_for_q3_right_down
+                best_sin_q1_for_q3_right_down = swept_sin_q1_for_q3_right_down
+                found = elsewhere(
+                    (
+                        (turn_q1_for_q3_right_down*turn_q1_for_q3_right_down > 1e-12)
+                        | (
+                            (
+                                r21_from_q1_rate_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
+                                + r22_from_q1_rate_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
+                            )
+                            *turn_q1_for_q3_right_down*turn_q1_for_q3_right_down > 1e-12*radius_q6_before_q1_for_q3_right
+                            *radius_q6_before_q1_for_q3_right
+                        )
+                    ),
+                    (
+                        best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
+                        best_sin_q1_for_q3_right_down,
+                    ),
+                    elsewhere_best_cost_q1_for_q3_right_down,
+                    (
+                        ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right,
+                        turn_q1_for_q3_right_down, wrist_x, wrist_y,
+                    ),
+                )
+                (
+                    best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
+                    best_sin_q1_for_q3_right_down,
+                ) = found
+                found = elsewhere(
+                    absolute(rate_q1_for_q3_right_down) > 1e-12*size_q1_for_q3,
+                    (
+                        best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
+                        best_sin_q1_for_q3_right_down,
+                    ),
+                    elsewhere_best_cost_q1_for_q3_right_down_2,
+                    (
+                        swept_ahead_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down, swept_cost_q1_for_q3_right_down,
+                        swept_sin_q1_for_q3_right_down,
+                    ),
+                )
+                (
+                    best_cost_q1_for_q3_right_down, best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down,
+                    best_sin_q1_for_q3_right_down,
+                ) = found
+
+                def elsewhere_ahead_q1_right_down(
+                    best_ahead_q1_for_q3_right_down: Real, best_cos_q1_for_q3_right_down: Real,
+                    best_sin_q1_for_q3_right_down: Real,
+                ) -> Reals:
+                    ahead_q1_right_down = best_ahead_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
+                    cos_q1_right_down = best_cos_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
+                    sin_q1_right_down = best_sin_q1_for_q3_right_down  # turned within rounding, where the rest can be reached
+                    return (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down)
+
+                ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down = elsewhere(
+                    best_cost_q1_for_q3_right_down > 1e-12*machine_scale,
+                    (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down),
+                    elsewhere_ahead_q1_right_down,
+                    (best_ahead_q1_for_q3_right_down, best_cos_q1_for_q3_right_down, best_sin_q1_for_q3_right_down),
+                )
+                return (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down)
+
+            ahead_q1_right_down = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down = elsewhere(
+                absolute(value_q1_for_q3_right_down) <= size_q1_for_q3,
+                (ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down),
+                elsewhere_ahead_q1_right_down,
+                (
+                    ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, cos_q5_before_q1_for_q3_right,
+                    cos_q6_rate_q1_for_q3_right_down, r21_from_q1_before_q6_before_q1_for_q3_right_down,
+                    r21_from_q1_rate_q1_for_q3_right, r22_from_q1_rate_q1_for_q3_right, r23_from_q1_rate_q1_for_q3_right,
+                    r31, r32, r33, radius_q6_before_q1_for_q3_right, radius_q6_rate_q1_for_q3_right,
+                    sin_q1_before_q1_for_q3_right, sin_q6_rate_q1_for_q3_right_down, swept_cos_q1_for_q3_right_down,
+                    swept_cost_q1_for_q3_right_down, swept_sin_q1_for_q3_right_down, value_q1_for_q3_right_down, wrist_x,
+                    wrist_x_from_q1_before_q1_for_q3_right_down, wrist_y, wrist_y_from_q1_before_q1_for_q3_right_down,
+                ),
+            )
+
+            def elsewhere_ahead_q1_right_up(
+                ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
+                cos_q5_before_q1_for_q3_right: Real, cos_q6_rate_q1_for_q3_right_up: Real,
+                r21_from_q1_before_q6_before_q1_for_q3_right_up: Real, r21_from_q1_rate_q1_for_q3_right: Real,
+                r22_from_q1_rate_q1_for_q3_right: Real, r23_from_q1_rate_q1_for_q3_right: Real, r31: Real, r32: Real,
+                r33: Real, radius_q6_before_q1_for_q3_right: Real, radius_q6_rate_q1_for_q3_right: Real,
+                sin_q1_before_q1_for_q3_right: Real, sin_q6_rate_q1_for_q3_right_up: Real,
+                swept_cos_q1_for_q3_right_up: Real, swept_cost_q1_for_q3_right_up: Real,
+                swept_sin_q1_for_q3_right_up: Real, value_q1_for_q3_right_up: Real, wrist_x: Real,
+                wrist_x_from_q1_before_q1_for_q3_right_up: Real, wrist_y: Real,
+                wrist_y_from_q1_before_q1_for_q3_right_up: Real,
+            ) -> Reals:
+                r21_from_q1_before_q6_rate_q1_for_q3_right_up = (
+                    r31*cos_q6_rate_q1_for_q3_right_up - r32*sin_q6_rate_q1_for_q3_right_up
+                )
+                r21_from_q1_before_q56_rate_q1_for_q3_right_up = (
+                    r21_from_q1_before_q6_rate_q1_for_q3_right_up*cos_q5_before_q1_for_q3_right
+                    + r33*radius_q6_rate_q1_for_q3_right
+                    - r21_from_q1_before_q6_before_q1_for_q3_right_up*r23_from_q1_rate_q1_for_q3_right
+                )
+                wrist_x_from_q1_rate_q1_for_q3_right_up = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3_right_up
+                r22_from_q1_before_q6_rate_q1_for_q3_right_up = (
+                    r32*cos_q6_rate_q1_for_q3_right_up + r31*sin_q6_rate_q1_for_q3_right_up
+                )
+                wrist_y_from_q1_rate_q1_for_q3_right_up = d5*r22_from_q1_before_q6_rate_q1_for_q3_right_up
+                # how it changes with q1
+                rate_q1_for_q3_right_up = (
+                    2.0*wrist_x_from_q1_before_q1_for_q3_right_up*wrist_x_from_q1_rate_q1_for_q3_right_up
+                    + 2.0*wrist_y_from_q1_before_q1_for_q3_right_up*wrist_y_from_q1_rate_q1_for_q3_right_up
+                )
+                swept_ahead_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up*wrist_x + swept_sin_q1_for_q3_right_up*wrist_y
+
+                def elsewhere_best_cost_q1_for_q3_right_up_2(
+                    swept_ahead_q1_for_q3_right_up: Real, swept_cos_q1_for_q3_right_up: Real,
+                    swept_cost_q1_for_q3_right_up: Real, swept_sin_q1_for_q3_right_up: Real,
+                ) -> Reals:
+                    best_cost_q1_for_q3_right_up = swept_cost_q1_for_q3_right_up
+                    best_ahead_q1_for_q3_right_up = swept_ahead_q1_for_q3_right_up
+                    best_cos_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up
+                    best_sin_q1_for_q3_right_up = swept_sin_q1_for_q3_right_up
+                    return (
+                        best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
+                        best_sin_q1_for_q3_right_up,
+                    )
+
+                excess_q1_for_q3_right_up = select(
+                    value_q1_for_q3_right_up > 0.0, value_q1_for_q3_right_up - size_q1_for_q3,
+                    size_q1_for_q3 + value_q1_for_q3_right_up,
+                )
+                # to the boundary of the later step
+                turn_q1_for_q3_right_up = -excess_q1_for_q3_right_up/rate_q1_for_q3_right_up
+
+                def elsewhere_best_cost_q1_for_q3_right_up(
+                    ahead_q1_before_q1_for_q3_right: Real, cos_q1_before_q1_for_q3_right: Real,
+                    sin_q1_before_q1_for_q3_right: Real, turn_q1_for_q3_right_up: Real, wrist_x: Real, wrist_y: Real,
+                ) -> Reals:
+                    turned_length_q1_for_q3_right_up = root(1.0 + turn_q1_for_q3_right_up*turn_q1_for_q3_right_up)
+                    turned_cos_q1_for_q3_right_up = (
+                        (cos_q1_before_q1_for_q3_right - turn_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right)
+                        /turned_length_q1_for_q3_right_up
+                    )
+                    turned_sin_q1_for_q3_right_up = (
+                        (sin_q1_before_q1_for_q3_right + turn_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right)
+                        /turned_length_q1_for_q3_right_up
+                    )
+                    # what is left of its own equation
+                    turned_cost_q1_for_q3_right_up = absolute(
+                        d4 + turned_cos_q1_for_q3_right_up*wrist_y - turned_sin_q1_for_q3_right_up*wrist_x
+                    )
+                    best_cost_q1_for_q3_right_up = turned_cost_q1_for_q3_right_up
+                    turned_ahead_q1_for_q3_right_up = (
+                        (ahead_q1_before_q1_for_q3_right - d4*turn_q1_for_q3_right_up)/turned_length_q1_for_q3_right_up
+                    )
+                    best_ahead_q1_for_q3_right_up = turned_ahead_q1_for_q3_right_up
+                    best_cos_q1_for_q3_right_up = turned_cos_q1_for_q3_right_up
+                    best_sin_q1_for_q3_right_up = turned_sin_q1_for_q3_right_up
+                    return (
+                        best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
+                        best_sin_q1_for_q3_right_up,
+                    )
+
+                best_cost_q1_for_q3_right_up = swept_cost_q1_for_q3_right_up
+                best_ahead_q1_for_q3_right_up = swept_ahead_q1_for_q3_right_up
+                best_cos_q1_for_q3_right_up = swept_cos_q1_for_q3_right_up
+                best_sin_q1_for_q3_right_up = swept_sin_q1_for_q3_right_up
+                found = elsewhere(
+                    (
+                        (turn_q1_for_q3_right_up*turn_q1_for_q3_right_up > 1e-12)
+                        | (
+                            (
+                                r21_from_q1_rate_q1_for_q3_right*r21_from_q1_rate_q1_for_q3_right
+                                + r22_from_q1_rate_q1_for_q3_right*r22_from_q1_rate_q1_for_q3_right
+                            )
+                            *turn_q1_for_q3_right_up*turn_q1_for_q3_right_up > 1e-12*radius_q6_before_q1_for_q3_right
+                            *radius_q6_before_q1_for_q3_right
+                        )
+                    ),
+                    (
+                        best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
+                        best_sin_q1_for_q3_right_up,
+                    ),
+                    elsewhere_best_cost_q1_for_q3_right_up,
+                    (
+                        ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right,
+                        turn_q1_for_q3_right_up, wrist_x, wrist_y,
+                    ),
+                )
+                (
+                    best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
+                    best_sin_q1_for_q3_right_up,
+                ) = found
+                found = elsewhere(
+                    absolute(rate_q1_for_q3_right_up) > 1e-12*size_q1_for_q3,
+                    (
+                        best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
+                        best_sin_q1_for_q3_right_up,
+                    ),
+                    elsewhere_best_cost_q1_for_q3_right_up_2,
+                    (
+                        swept_ahead_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up, swept_cost_q1_for_q3_right_up,
+                        swept_sin_q1_for_q3_right_up,
+                    ),
+                )
+                (
+                    best_cost_q1_for_q3_right_up, best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up,
+                    best_sin_q1_for_q3_right_up,
+                ) = found
+
+                def elsewhere_ahead_q1_right_up(
+                    best_ahead_q1_for_q3_right_up: Real, best_cos_q1_for_q3_right_up: Real, best_sin_q1_for_q3_right_up: Real,
+                ) -> Reals:
+                    ahead_q1_right_up = best_ahead_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
+                    cos_q1_right_up = best_cos_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
+                    sin_q1_right_up = best_sin_q1_for_q3_right_up  # turned within rounding, where the rest can be reached
+                    return (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up)
+
+                ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+                ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up = elsewhere(
+                    best_cost_q1_for_q3_right_up > 1e-12*machine_scale,
+                    (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up),
+                    elsewhere_ahead_q1_right_up,
+                    (best_ahead_q1_for_q3_right_up, best_cos_q1_for_q3_right_up, best_sin_q1_for_q3_right_up),
+                )
+                return (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up)
+
+            ahead_q1_right_up = ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+            ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up = elsewhere(
+                absolute(value_q1_for_q3_right_up) <= size_q1_for_q3,
+                (ahead_q1_right_up, cos_q1_right_up, sin_q1_right_up),
+                elsewhere_ahead_q1_right_up,
+                (
+                    ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right, cos_q5_before_q1_for_q3_right,
+                    cos_q6_rate_q1_for_q3_right_up, r21_from_q1_before_q6_before_q1_for_q3_right_up,
+                    r21_from_q1_rate_q1_for_q3_right, r22_from_q1_rate_q1_for_q3_right, r23_from_q1_rate_q1_for_q3_right,
+                    r31, r32, r33, radius_q6_before_q1_for_q3_right, radius_q6_rate_q1_for_q3_right,
+                    sin_q1_before_q1_for_q3_right, sin_q6_rate_q1_for_q3_right_up, swept_cos_q1_for_q3_right_up,
+                    swept_cost_q1_for_q3_right_up, swept_sin_q1_for_q3_right_up, value_q1_for_q3_right_up, wrist_x,
+                    wrist_x_from_q1_before_q1_for_q3_right_up, wrist_y, wrist_y_from_q1_before_q1_for_q3_right_up,
+                ),
+            )
+            return (
+                ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down, ahead_q1_left_up, cos_q1_left_up, sin_q1_left_up,
+                ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down, ahead_q1_right_up, cos_q1_right_up,
+                sin_q1_right_up,
+            )
+
+        ahead_q1_left_down = -ahead_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+        cos_q1_left_down = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+        sin_q1_left_down = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+        ahead_q1_left_up = ahead_q1_left_down  # turned within rounding, where the rest can be reached
+        cos_q1_left_up = cos_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+        sin_q1_left_up = sin_q1_before_q1_for_q3_left  # turned within rounding, where the rest can be reached
+        ahead_q1_right_down = -ahead_q1_left_down  # turned within rounding, where the rest can be reached
+        cos_q1_right_down = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+        sin_q1_right_down = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+        ahead_q1_right_up = -ahead_q1_left_down  # turned within rounding, where the rest can be reached
+        cos_q1_right_up = cos_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+        sin_q1_right_up = sin_q1_before_q1_for_q3_right  # turned within rounding, where the rest can be reached
+        found = elsewhere(
+            ahead_squared_q1 > 1e-6*machine_scale*machine_scale,
+            (
+                ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down, ahead_q1_left_up, cos_q1_left_up,
+                sin_q1_left_up, ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down, ahead_q1_right_up,
+                cos_q1_right_up, sin_q1_right_up,
+            ),
+            elsewhere_ahead_q1_left_down,
+            (
+                ahead_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_right,
+                distance_q1, r11, r12, r13, r21, r22, r23, r31, r32, r33, ref_a6, sin_q1_before_q1_for_q3_left,
+                sin_q1_before_q1_for_q3_right, wrist_x, wrist_y, wrist_z,
+            ),
+        )
+        (
+            ahead_q1_left_down, cos_q1_left_down, sin_q1_left_down, ahead_q1_left_up, cos_q1_left_up,
+            sin_q1_left_up, ahead_q1_right_down, cos_q1_right_down, sin_q1_right_down, ahead_q1_right_up,
+            cos_q1_right_up, sin_q1_right_up,
+        ) = found
+        # q5: linear pair in the q6 radius and r32 equations
+        cos_q5_left_down = r13*sin_q1_left_down - r23*cos_q1_left_down
+        r21_from_q1_left_down = r21*cos_q1_left_down - r11*sin_q1_left_down
+        r22_from_q1_left_down = r22*cos_q1_left_down - r12*sin_q1_left_down
         # q6: direction and distance of a point
-        radius_q6_left = sqrt(r21_from_q1_left*r21_from_q1_left + r22_from_q1_left*r22_from_q1_left)
+        radius_q6_left_down = sqrt(
+            r21_from_q1_left_down*r21_from_q1_left_down + r22_from_q1_left_down*r22_from_q1_left_down
+        )
 
         def elsewhere_cos_q6_before_q6_of_q3_left_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3_left_down = cos(free_a6)  # its reference where it is free
             sin_q6_before_q6_of_q3_left_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_left_up = cos_q6_before_q6_of_q3_left_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_left_up = sin_q6_before_q6_of_q3_left_down
-            return (
-                cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
-                sin_q6_before_q6_of_q3_left_up,
-            )
+            return (cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down)
 
-        cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left/radius_q6_left  # its reference where it is free
-        sin_q6_before_q6_of_q3_left_down = r22_from_q1_left/radius_q6_left
-        cos_q6_before_q6_of_q3_left_up = -cos_q6_before_q6_of_q3_left_down  # its reference where it is free
-        sin_q6_before_q6_of_q3_left_up = -sin_q6_before_q6_of_q3_left_down
-        found = elsewhere(
-            radius_q6_left > 1e-11,
-            (
-                cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
-                sin_q6_before_q6_of_q3_left_up,
-            ),
+        # its reference where it is free
+        cos_q6_before_q6_of_q3_left_down = -r21_from_q1_left_down/radius_q6_left_down
+        sin_q6_before_q6_of_q3_left_down = r22_from_q1_left_down/radius_q6_left_down
+        cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down = elsewhere(
+            radius_q6_left_down > 1e-11,
+            (cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down),
             elsewhere_cos_q6_before_q6_of_q3_left_down,
             (ref_a6,),
         )
-        (
-            cos_q6_before_q6_of_q3_left_down, sin_q6_before_q6_of_q3_left_down, cos_q6_before_q6_of_q3_left_up,
-            sin_q6_before_q6_of_q3_left_up,
-        ) = found
         r21_from_q1_before_q6_before_q6_of_q3_left_down = (
             r31*cos_q6_before_q6_of_q3_left_down - r32*sin_q6_before_q6_of_q3_left_down
         )
         r21_from_q1_before_q56_before_q6_of_q3_left_down = (
-            r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left - r33*radius_q6_left
+            r21_from_q1_before_q6_before_q6_of_q3_left_down*cos_q5_left_down - r33*radius_q6_left_down
         )
         wrist_x_from_q1_before_q6_of_q3_left_down = (
-            wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_left_down
+            ahead_q1_left_down - d5*r21_from_q1_before_q56_before_q6_of_q3_left_down
         )
         r22_from_q1_before_q6_before_q6_of_q3_left_down = (
             r32*cos_q6_before_q6_of_q3_left_down + r31*sin_q6_before_q6_of_q3_left_down
         )
-        wrist_z = z - d6*r33
         wrist_y_from_q1_before_q6_of_q3_left_down = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3_left_down - d1
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3_left_down = (
@@ -601,29 +2589,29 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_cos_q6_left_down(
-            cos_q1_left: Real, cos_q5_left: Real, cos_q6_before_q6_of_q3_left_down: Real, r31: Real, r32: Real,
-            r33: Real, radius_q6_left: Real, sin_q1_left: Real, sin_q6_before_q6_of_q3_left_down: Real,
-            value_q6_of_q3_left_down: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+            ahead_q1_left_down: Real, cos_q5_left_down: Real, cos_q6_before_q6_of_q3_left_down: Real, r31: Real,
+            r32: Real, r33: Real, radius_q6_left_down: Real, sin_q6_before_q6_of_q3_left_down: Real,
+            value_q6_of_q3_left_down: Real, wrist_z: Real,
         ) -> Reals:
-            wrist_x_from_q1_along_left = -d5*r31*cos_q5_left
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
-            wrist_x_from_q1_across_left = d5*r32*cos_q5_left
             wrist_y_from_q1_across = d5*r31
 
             def elsewhere_cos_q6_left_down(
-                cos_q1_left: Real, cos_q6_before_q6_of_q3_left_down: Real, r33: Real, radius_q6_left: Real,
-                sin_q1_left: Real, sin_q6_before_q6_of_q3_left_down: Real, value_q6_of_q3_left_down: Real, wrist_x: Real,
-                wrist_x_from_q1_across_left: Real, wrist_x_from_q1_along_left: Real, wrist_y: Real,
-                wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
+                ahead_q1_left_down: Real, cos_q5_left_down: Real, cos_q6_before_q6_of_q3_left_down: Real, r31: Real,
+                r32: Real, r33: Real, radius_q6_left_down: Real, sin_q6_before_q6_of_q3_left_down: Real,
+                value_q6_of_q3_left_down: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+                wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left + d5*r33*radius_q6_left
+                wrist_x_from_q1_fixed_left_down = ahead_q1_left_down + d5*r33*radius_q6_left_down
+                wrist_x_from_q1_along_left_down = -d5*r31*cos_q5_left_down
                 along_q6_of_q3_left_down = (
-                    2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_down
+                    2.0*wrist_x_from_q1_along_left_down*wrist_x_from_q1_fixed_left_down
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
+                wrist_x_from_q1_across_left_down = d5*r32*cos_q5_left_down
                 across_q6_of_q3_left_down = (
-                    2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_down
+                    2.0*wrist_x_from_q1_across_left_down*wrist_x_from_q1_fixed_left_down
                     + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3_left_down = sqrt(
@@ -641,24 +2629,24 @@ class ArrayPrograms(Programs):
                 )
                 # the arc: cosines from its centre
                 highest_q6_of_q3_left_down = select(
-                    (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down > 1.0,
+                    (size_q1_for_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down > 1.0,
                     1.0,
                     select(
-                        (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down,
+                        (size_q1_for_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down < -1.0, -1.0,
+                        (size_q1_for_q3 - level_q6_of_q3_left_down)/swing_q6_of_q3_left_down,
                     ),
                 )
                 lowest_q6_of_q3_left_down = select(
-                    (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down > 1.0,
+                    (-level_q6_of_q3_left_down - size_q1_for_q3)/swing_q6_of_q3_left_down > 1.0,
                     1.0,
                     select(
-                        (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down < -1.0,
+                        (-level_q6_of_q3_left_down - size_q1_for_q3)/swing_q6_of_q3_left_down < -1.0,
                         -1.0,
-                        (-level_q6_of_q3_left_down - size_q6_of_q3)/swing_q6_of_q3_left_down,
+                        (-level_q6_of_q3_left_down - size_q1_for_q3)/swing_q6_of_q3_left_down,
                     ),
                 )
                 highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down = elsewhere(
-                    swing_q6_of_q3_left_down > 1e-12*size_q6_of_q3,
+                    swing_q6_of_q3_left_down > 1e-12*size_q1_for_q3,
                     (highest_q6_of_q3_left_down, lowest_q6_of_q3_left_down),
                     elsewhere_highest_q6_of_q3_left_down,
                     (),
@@ -701,7 +2689,7 @@ class ArrayPrograms(Programs):
                             sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down
                         )*(sin_q6_after_q6_of_q3_left_down - sin_q6_before_q6_of_q3_left_down)
                     )
-                    *radius_q6_left
+                    *radius_q6_left_down
                 )
 
                 def elsewhere_cos_q6_left_down(
@@ -714,7 +2702,7 @@ class ArrayPrograms(Programs):
                 cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
                 sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
                 cos_q6_left_down, sin_q6_left_down = elsewhere(
-                    (cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left > 1e-11),
+                    (cost_q6_of_q3_left_down > 1e-12) & (radius_q6_left_down > 1e-11),
                     (cos_q6_left_down, sin_q6_left_down),
                     elsewhere_cos_q6_left_down,
                     (cos_q6_after_q6_of_q3_left_down, sin_q6_after_q6_of_q3_left_down),
@@ -724,14 +2712,13 @@ class ArrayPrograms(Programs):
             cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
             sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
             cos_q6_left_down, sin_q6_left_down = elsewhere(
-                (radius_q6_left > 0.1) & (absolute(value_q6_of_q3_left_down) > 1.000000001*size_q6_of_q3),
+                (radius_q6_left_down > 0.1) & (absolute(value_q6_of_q3_left_down) > 1.000000001*size_q1_for_q3),
                 (cos_q6_left_down, sin_q6_left_down),
                 elsewhere_cos_q6_left_down,
                 (
-                    cos_q1_left, cos_q6_before_q6_of_q3_left_down, r33, radius_q6_left, sin_q1_left,
-                    sin_q6_before_q6_of_q3_left_down, value_q6_of_q3_left_down, wrist_x, wrist_x_from_q1_across_left,
-                    wrist_x_from_q1_along_left, wrist_y, wrist_y_from_q1_across, wrist_y_from_q1_along,
-                    wrist_y_from_q1_fixed,
+                    ahead_q1_left_down, cos_q5_left_down, cos_q6_before_q6_of_q3_left_down, r31, r32, r33,
+                    radius_q6_left_down, sin_q6_before_q6_of_q3_left_down, value_q6_of_q3_left_down,
+                    wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_left_down, sin_q6_left_down)
@@ -739,18 +2726,18 @@ class ArrayPrograms(Programs):
         cos_q6_left_down = cos_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
         sin_q6_left_down = sin_q6_before_q6_of_q3_left_down  # kept where the rest can be reached
         cos_q6_left_down, sin_q6_left_down = elsewhere(
-            absolute(value_q6_of_q3_left_down) <= size_q6_of_q3,
+            absolute(value_q6_of_q3_left_down) <= size_q1_for_q3,
             (cos_q6_left_down, sin_q6_left_down),
             elsewhere_cos_q6_left_down,
             (
-                cos_q1_left, cos_q5_left, cos_q6_before_q6_of_q3_left_down, r31, r32, r33, radius_q6_left,
-                sin_q1_left, sin_q6_before_q6_of_q3_left_down, value_q6_of_q3_left_down, wrist_x, wrist_y, wrist_z,
+                ahead_q1_left_down, cos_q5_left_down, cos_q6_before_q6_of_q3_left_down, r31, r32, r33,
+                radius_q6_left_down, sin_q6_before_q6_of_q3_left_down, value_q6_of_q3_left_down, wrist_z,
             ),
         )
         r21_from_q1_before_q6_left_down = r31*cos_q6_left_down - r32*sin_q6_left_down
-        r21_from_q1_before_q56_left_down = r21_from_q1_before_q6_left_down*cos_q5_left - r33*radius_q6_left
+        r21_from_q1_before_q56_left_down = r21_from_q1_before_q6_left_down*cos_q5_left_down - r33*radius_q6_left_down
         # what the unknown links must span
-        wrist_x_from_q1_left_down = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_down
+        wrist_x_from_q1_left_down = ahead_q1_left_down - d5*r21_from_q1_before_q56_left_down
         r22_from_q1_before_q6_left_down = r32*cos_q6_left_down + r31*sin_q6_left_down
         # what the unknown links must span
         wrist_y_from_q1_left_down = wrist_z + d5*r22_from_q1_before_q6_left_down - d1
@@ -768,7 +2755,8 @@ class ArrayPrograms(Programs):
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1_left = nearest_period(offset_a1 + degrees(sin_q1_left, cos_q1_left), near_a1)  # A1: its turn
+        # A1: its turn
+        axis_a1_left_down = nearest_period(offset_a1 + degrees(sin_q1_left_down, cos_q1_left_down), near_a1)
         both_q3_left_down = above_q3_left_down + below_q3_left_down  # twice the scale, with the rounding of its parts
         sum_q3_left_down = select(absolute(both_q3_left_down) > 0.0, both_q3_left_down, 1.0)
         cos_q3_left_down = (above_q3_left_down - below_q3_left_down)/sum_q3_left_down
@@ -849,7 +2837,8 @@ class ArrayPrograms(Programs):
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5_left_down = nearest_period(offset_a5 + degrees(radius_q6_left, cos_q5_left), near_a5)  # A5: its turn
+        # A5: its turn
+        axis_a5_left_down = nearest_period(offset_a5 + degrees(radius_q6_left_down, cos_q5_left_down), near_a5)
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
@@ -858,15 +2847,33 @@ class ArrayPrograms(Programs):
         )
         # A6: its turn
         axis_a6_left_down = nearest_period(offset_a6 + degrees(sin_q6_left_down, cos_q6_left_down), near_a6)
+        cos_q5_left_up = r13*sin_q1_left_up - r23*cos_q1_left_up  # q5: linear pair in the q6 radius and r32 equations
+        r21_from_q1_left_up = r21*cos_q1_left_up - r11*sin_q1_left_up
+        r22_from_q1_left_up = r22*cos_q1_left_up - r12*sin_q1_left_up
+        # q6: direction and distance of a point
+        radius_q6_left_up = sqrt(r21_from_q1_left_up*r21_from_q1_left_up + r22_from_q1_left_up*r22_from_q1_left_up)
+
+        def elsewhere_cos_q6_before_q6_of_q3_left_up(ref_a6: Real) -> Reals:
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_q6_before_q6_of_q3_left_up = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_left_up = sin(free_a6)
+            return (cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up)
+
+        cos_q6_before_q6_of_q3_left_up = r21_from_q1_left_up/radius_q6_left_up  # its reference where it is free
+        sin_q6_before_q6_of_q3_left_up = -r22_from_q1_left_up/radius_q6_left_up
+        cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up = elsewhere(
+            radius_q6_left_up > 1e-11,
+            (cos_q6_before_q6_of_q3_left_up, sin_q6_before_q6_of_q3_left_up),
+            elsewhere_cos_q6_before_q6_of_q3_left_up,
+            (ref_a6,),
+        )
         r21_from_q1_before_q6_before_q6_of_q3_left_up = (
             r31*cos_q6_before_q6_of_q3_left_up - r32*sin_q6_before_q6_of_q3_left_up
         )
         r21_from_q1_before_q56_before_q6_of_q3_left_up = (
-            r21_from_q1_before_q6_before_q6_of_q3_left_up*cos_q5_left + r33*radius_q6_left
+            r21_from_q1_before_q6_before_q6_of_q3_left_up*cos_q5_left_up + r33*radius_q6_left_up
         )
-        wrist_x_from_q1_before_q6_of_q3_left_up = (
-            wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_left_up
-        )
+        wrist_x_from_q1_before_q6_of_q3_left_up = ahead_q1_left_up - d5*r21_from_q1_before_q56_before_q6_of_q3_left_up
         r22_from_q1_before_q6_before_q6_of_q3_left_up = (
             r32*cos_q6_before_q6_of_q3_left_up + r31*sin_q6_before_q6_of_q3_left_up
         )
@@ -878,29 +2885,28 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_cos_q6_left_up(
-            cos_q1_left: Real, cos_q5_left: Real, cos_q6_before_q6_of_q3_left_up: Real, r31: Real, r32: Real,
-            r33: Real, radius_q6_left: Real, sin_q1_left: Real, sin_q6_before_q6_of_q3_left_up: Real,
-            value_q6_of_q3_left_up: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+            ahead_q1_left_up: Real, cos_q5_left_up: Real, cos_q6_before_q6_of_q3_left_up: Real, r31: Real, r32: Real,
+            r33: Real, radius_q6_left_up: Real, sin_q6_before_q6_of_q3_left_up: Real, value_q6_of_q3_left_up: Real,
+            wrist_z: Real,
         ) -> Reals:
-            wrist_x_from_q1_along_left = -d5*r31*cos_q5_left
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
-            wrist_x_from_q1_across_left = d5*r32*cos_q5_left
             wrist_y_from_q1_across = d5*r31
 
             def elsewhere_cos_q6_left_up(
-                cos_q1_left: Real, cos_q6_before_q6_of_q3_left_up: Real, r33: Real, radius_q6_left: Real,
-                sin_q1_left: Real, sin_q6_before_q6_of_q3_left_up: Real, value_q6_of_q3_left_up: Real, wrist_x: Real,
-                wrist_x_from_q1_across_left: Real, wrist_x_from_q1_along_left: Real, wrist_y: Real,
+                ahead_q1_left_up: Real, cos_q5_left_up: Real, cos_q6_before_q6_of_q3_left_up: Real, r31: Real, r32: Real,
+                r33: Real, radius_q6_left_up: Real, sin_q6_before_q6_of_q3_left_up: Real, value_q6_of_q3_left_up: Real,
                 wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r33*radius_q6_left
+                wrist_x_from_q1_fixed_left_up = ahead_q1_left_up - d5*r33*radius_q6_left_up
+                wrist_x_from_q1_along_left_up = -d5*r31*cos_q5_left_up
                 along_q6_of_q3_left_up = (
-                    2.0*wrist_x_from_q1_along_left*wrist_x_from_q1_fixed_left_up
+                    2.0*wrist_x_from_q1_along_left_up*wrist_x_from_q1_fixed_left_up
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
+                wrist_x_from_q1_across_left_up = d5*r32*cos_q5_left_up
                 across_q6_of_q3_left_up = (
-                    2.0*wrist_x_from_q1_across_left*wrist_x_from_q1_fixed_left_up
+                    2.0*wrist_x_from_q1_across_left_up*wrist_x_from_q1_fixed_left_up
                     + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3_left_up = sqrt(
@@ -918,24 +2924,24 @@ class ArrayPrograms(Programs):
                 )
                 # the arc: cosines from its centre
                 highest_q6_of_q3_left_up = select(
-                    (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0,
+                    (size_q1_for_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up > 1.0,
                     1.0,
                     select(
-                        (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up,
+                        (size_q1_for_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up < -1.0, -1.0,
+                        (size_q1_for_q3 - level_q6_of_q3_left_up)/swing_q6_of_q3_left_up,
                     ),
                 )
                 lowest_q6_of_q3_left_up = select(
-                    (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up > 1.0,
+                    (-level_q6_of_q3_left_up - size_q1_for_q3)/swing_q6_of_q3_left_up > 1.0,
                     1.0,
                     select(
-                        (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up < -1.0,
+                        (-level_q6_of_q3_left_up - size_q1_for_q3)/swing_q6_of_q3_left_up < -1.0,
                         -1.0,
-                        (-level_q6_of_q3_left_up - size_q6_of_q3)/swing_q6_of_q3_left_up,
+                        (-level_q6_of_q3_left_up - size_q1_for_q3)/swing_q6_of_q3_left_up,
                     ),
                 )
                 highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up = elsewhere(
-                    swing_q6_of_q3_left_up > 1e-12*size_q6_of_q3,
+                    swing_q6_of_q3_left_up > 1e-12*size_q1_for_q3,
                     (highest_q6_of_q3_left_up, lowest_q6_of_q3_left_up),
                     elsewhere_highest_q6_of_q3_left_up,
                     (),
@@ -975,7 +2981,7 @@ class ArrayPrograms(Programs):
                             sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up
                         )*(sin_q6_after_q6_of_q3_left_up - sin_q6_before_q6_of_q3_left_up)
                     )
-                    *radius_q6_left
+                    *radius_q6_left_up
                 )
 
                 def elsewhere_cos_q6_left_up(
@@ -988,7 +2994,7 @@ class ArrayPrograms(Programs):
                 cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
                 sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
                 cos_q6_left_up, sin_q6_left_up = elsewhere(
-                    (cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left > 1e-11),
+                    (cost_q6_of_q3_left_up > 1e-12) & (radius_q6_left_up > 1e-11),
                     (cos_q6_left_up, sin_q6_left_up),
                     elsewhere_cos_q6_left_up,
                     (cos_q6_after_q6_of_q3_left_up, sin_q6_after_q6_of_q3_left_up),
@@ -998,13 +3004,12 @@ class ArrayPrograms(Programs):
             cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
             sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
             cos_q6_left_up, sin_q6_left_up = elsewhere(
-                (radius_q6_left > 0.1) & (absolute(value_q6_of_q3_left_up) > 1.000000001*size_q6_of_q3),
+                (radius_q6_left_up > 0.1) & (absolute(value_q6_of_q3_left_up) > 1.000000001*size_q1_for_q3),
                 (cos_q6_left_up, sin_q6_left_up),
                 elsewhere_cos_q6_left_up,
                 (
-                    cos_q1_left, cos_q6_before_q6_of_q3_left_up, r33, radius_q6_left, sin_q1_left,
-                    sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up, wrist_x, wrist_x_from_q1_across_left,
-                    wrist_x_from_q1_along_left, wrist_y, wrist_y_from_q1_across, wrist_y_from_q1_along,
+                    ahead_q1_left_up, cos_q5_left_up, cos_q6_before_q6_of_q3_left_up, r31, r32, r33, radius_q6_left_up,
+                    sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up, wrist_y_from_q1_across, wrist_y_from_q1_along,
                     wrist_y_from_q1_fixed,
                 ),
             )
@@ -1013,18 +3018,18 @@ class ArrayPrograms(Programs):
         cos_q6_left_up = cos_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
         sin_q6_left_up = sin_q6_before_q6_of_q3_left_up  # kept where the rest can be reached
         cos_q6_left_up, sin_q6_left_up = elsewhere(
-            absolute(value_q6_of_q3_left_up) <= size_q6_of_q3,
+            absolute(value_q6_of_q3_left_up) <= size_q1_for_q3,
             (cos_q6_left_up, sin_q6_left_up),
             elsewhere_cos_q6_left_up,
             (
-                cos_q1_left, cos_q5_left, cos_q6_before_q6_of_q3_left_up, r31, r32, r33, radius_q6_left, sin_q1_left,
-                sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up, wrist_x, wrist_y, wrist_z,
+                ahead_q1_left_up, cos_q5_left_up, cos_q6_before_q6_of_q3_left_up, r31, r32, r33, radius_q6_left_up,
+                sin_q6_before_q6_of_q3_left_up, value_q6_of_q3_left_up, wrist_z,
             ),
         )
         r21_from_q1_before_q6_left_up = r31*cos_q6_left_up - r32*sin_q6_left_up
-        r21_from_q1_before_q56_left_up = r21_from_q1_before_q6_left_up*cos_q5_left + r33*radius_q6_left
+        r21_from_q1_before_q56_left_up = r21_from_q1_before_q6_left_up*cos_q5_left_up + r33*radius_q6_left_up
         # what the unknown links must span
-        wrist_x_from_q1_left_up = wrist_x*cos_q1_left + wrist_y*sin_q1_left - d5*r21_from_q1_before_q56_left_up
+        wrist_x_from_q1_left_up = ahead_q1_left_up - d5*r21_from_q1_before_q56_left_up
         r22_from_q1_before_q6_left_up = r32*cos_q6_left_up + r31*sin_q6_left_up
         wrist_y_from_q1_left_up = wrist_z + d5*r22_from_q1_before_q6_left_up - d1  # what the unknown links must span
         reach_left_up = sqrt(
@@ -1034,6 +3039,7 @@ class ArrayPrograms(Programs):
         above_q3_left_up = (a3 + reach_left_up - a2)*(a2 + reach_left_up - a3)  # zero where it is the other
         product_q3_left_up = above_q3_left_up*below_q3_left_up
         refusal_left_up = select(product_q3_left_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
+        axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)  # A1: its turn
         both_q3_left_up = above_q3_left_up + below_q3_left_up  # twice the scale, with the rounding of its parts
         sum_q3_left_up = select(absolute(both_q3_left_up) > 0.0, both_q3_left_up, 1.0)
         cos_q3_left_up = (above_q3_left_up - below_q3_left_up)/sum_q3_left_up
@@ -1090,7 +3096,8 @@ class ArrayPrograms(Programs):
         axis_a4_left_up_up = nearest_period(
             offset_a4 + (angle_with_q4_left_up - angle_q2_left_up_up - angle_q3_left_up_up)/DEGREE, near_a4,
         )
-        axis_a5_left_up = nearest_period(offset_a5 + degrees(-radius_q6_left, cos_q5_left), near_a5)  # A5: its turn
+        # A5: its turn
+        axis_a5_left_up = nearest_period(offset_a5 + degrees(-radius_q6_left_up, cos_q5_left_up), near_a5)
         axis_a6_left_up = nearest_period(offset_a6 + degrees(sin_q6_left_up, cos_q6_left_up), near_a6)  # A6: its turn
         angle_q2_left_down_down = atan2(direction_y_q2_left_down_down, direction_x_q2_left_down_down)
         axis_a2_left_down_down = nearest_period(offset_a2 + angle_q2_left_down_down/DEGREE, near_a2)  # A2: its turn
@@ -1108,48 +3115,38 @@ class ArrayPrograms(Programs):
         axis_a4_left_down_up = nearest_period(
             offset_a4 + (angle_with_q4_left_up - angle_q2_left_down_up - angle_q3_left_down_up)/DEGREE, near_a4,
         )
-        cos_q5_right = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
-        r21_from_q1_right = r21*cos_q1_right - r11*sin_q1_right
-        r22_from_q1_right = r22*cos_q1_right - r12*sin_q1_right
+        # q5: linear pair in the q6 radius and r32 equations
+        cos_q5_right_down = r13*sin_q1_right_down - r23*cos_q1_right_down
+        r21_from_q1_right_down = r21*cos_q1_right_down - r11*sin_q1_right_down
+        r22_from_q1_right_down = r22*cos_q1_right_down - r12*sin_q1_right_down
         # q6: direction and distance of a point
-        radius_q6_right = sqrt(r21_from_q1_right*r21_from_q1_right + r22_from_q1_right*r22_from_q1_right)
+        radius_q6_right_down = sqrt(
+            r21_from_q1_right_down*r21_from_q1_right_down + r22_from_q1_right_down*r22_from_q1_right_down
+        )
 
         def elsewhere_cos_q6_before_q6_of_q3_right_down(ref_a6: Real) -> Reals:
             free_a6 = (ref_a6 - offset_a6)*DEGREE
             cos_q6_before_q6_of_q3_right_down = cos(free_a6)  # its reference where it is free
             sin_q6_before_q6_of_q3_right_down = sin(free_a6)
-            cos_q6_before_q6_of_q3_right_up = cos_q6_before_q6_of_q3_right_down  # its reference where it is free
-            sin_q6_before_q6_of_q3_right_up = sin_q6_before_q6_of_q3_right_down
-            return (
-                cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up,
-                sin_q6_before_q6_of_q3_right_up,
-            )
+            return (cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down)
 
-        cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right/radius_q6_right  # its reference where it is free
-        sin_q6_before_q6_of_q3_right_down = r22_from_q1_right/radius_q6_right
-        cos_q6_before_q6_of_q3_right_up = -cos_q6_before_q6_of_q3_right_down  # its reference where it is free
-        sin_q6_before_q6_of_q3_right_up = -sin_q6_before_q6_of_q3_right_down
-        found = elsewhere(
-            radius_q6_right > 1e-11,
-            (
-                cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up,
-                sin_q6_before_q6_of_q3_right_up,
-            ),
+        # its reference where it is free
+        cos_q6_before_q6_of_q3_right_down = -r21_from_q1_right_down/radius_q6_right_down
+        sin_q6_before_q6_of_q3_right_down = r22_from_q1_right_down/radius_q6_right_down
+        cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down = elsewhere(
+            radius_q6_right_down > 1e-11,
+            (cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down),
             elsewhere_cos_q6_before_q6_of_q3_right_down,
             (ref_a6,),
         )
-        (
-            cos_q6_before_q6_of_q3_right_down, sin_q6_before_q6_of_q3_right_down, cos_q6_before_q6_of_q3_right_up,
-            sin_q6_before_q6_of_q3_right_up,
-        ) = found
         r21_from_q1_before_q6_before_q6_of_q3_right_down = (
             r31*cos_q6_before_q6_of_q3_right_down - r32*sin_q6_before_q6_of_q3_right_down
         )
         r21_from_q1_before_q56_before_q6_of_q3_right_down = (
-            r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right - r33*radius_q6_right
+            r21_from_q1_before_q6_before_q6_of_q3_right_down*cos_q5_right_down - r33*radius_q6_right_down
         )
         wrist_x_from_q1_before_q6_of_q3_right_down = (
-            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_right_down
+            ahead_q1_right_down - d5*r21_from_q1_before_q56_before_q6_of_q3_right_down
         )
         r22_from_q1_before_q6_before_q6_of_q3_right_down = (
             r32*cos_q6_before_q6_of_q3_right_down + r31*sin_q6_before_q6_of_q3_right_down
@@ -1164,29 +3161,29 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_cos_q6_right_down(
-            cos_q1_right: Real, cos_q5_right: Real, cos_q6_before_q6_of_q3_right_down: Real, r31: Real, r32: Real,
-            r33: Real, radius_q6_right: Real, sin_q1_right: Real, sin_q6_before_q6_of_q3_right_down: Real,
-            value_q6_of_q3_right_down: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+            ahead_q1_right_down: Real, cos_q5_right_down: Real, cos_q6_before_q6_of_q3_right_down: Real, r31: Real,
+            r32: Real, r33: Real, radius_q6_right_down: Real, sin_q6_before_q6_of_q3_right_down: Real,
+            value_q6_of_q3_right_down: Real, wrist_z: Real,
         ) -> Reals:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_across = d5*r31
-            wrist_x_from_q1_along_right = -d5*r31*cos_q5_right
-            wrist_x_from_q1_across_right = d5*r32*cos_q5_right
 
             def elsewhere_cos_q6_right_down(
-                cos_q1_right: Real, cos_q6_before_q6_of_q3_right_down: Real, r33: Real, radius_q6_right: Real,
-                sin_q1_right: Real, sin_q6_before_q6_of_q3_right_down: Real, value_q6_of_q3_right_down: Real,
-                wrist_x: Real, wrist_x_from_q1_across_right: Real, wrist_x_from_q1_along_right: Real, wrist_y: Real,
-                wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
+                ahead_q1_right_down: Real, cos_q5_right_down: Real, cos_q6_before_q6_of_q3_right_down: Real, r31: Real,
+                r32: Real, r33: Real, radius_q6_right_down: Real, sin_q6_before_q6_of_q3_right_down: Real,
+                value_q6_of_q3_right_down: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+                wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_right_down = wrist_x*cos_q1_right + wrist_y*sin_q1_right + d5*r33*radius_q6_right
+                wrist_x_from_q1_fixed_right_down = ahead_q1_right_down + d5*r33*radius_q6_right_down
+                wrist_x_from_q1_along_right_down = -d5*r31*cos_q5_right_down
                 along_q6_of_q3_right_down = (
-                    2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_down
+                    2.0*wrist_x_from_q1_along_right_down*wrist_x_from_q1_fixed_right_down
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
+                wrist_x_from_q1_across_right_down = d5*r32*cos_q5_right_down
                 across_q6_of_q3_right_down = (
-                    2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_down
+                    2.0*wrist_x_from_q1_across_right_down*wrist_x_from_q1_fixed_right_down
                     + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3_right_down = sqrt(
@@ -1205,24 +3202,24 @@ class ArrayPrograms(Programs):
                 )
                 # the arc: cosines from its centre
                 highest_q6_of_q3_right_down = select(
-                    (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down > 1.0,
+                    (size_q1_for_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down > 1.0,
                     1.0,
                     select(
-                        (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down,
+                        (size_q1_for_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down < -1.0, -1.0,
+                        (size_q1_for_q3 - level_q6_of_q3_right_down)/swing_q6_of_q3_right_down,
                     ),
                 )
                 lowest_q6_of_q3_right_down = select(
-                    (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down > 1.0,
+                    (-level_q6_of_q3_right_down - size_q1_for_q3)/swing_q6_of_q3_right_down > 1.0,
                     1.0,
                     select(
-                        (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down < -1.0,
+                        (-level_q6_of_q3_right_down - size_q1_for_q3)/swing_q6_of_q3_right_down < -1.0,
                         -1.0,
-                        (-level_q6_of_q3_right_down - size_q6_of_q3)/swing_q6_of_q3_right_down,
+                        (-level_q6_of_q3_right_down - size_q1_for_q3)/swing_q6_of_q3_right_down,
                     ),
                 )
                 highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down = elsewhere(
-                    swing_q6_of_q3_right_down > 1e-12*size_q6_of_q3,
+                    swing_q6_of_q3_right_down > 1e-12*size_q1_for_q3,
                     (highest_q6_of_q3_right_down, lowest_q6_of_q3_right_down),
                     elsewhere_highest_q6_of_q3_right_down,
                     (),
@@ -1265,7 +3262,7 @@ class ArrayPrograms(Programs):
                             sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down
                         )*(sin_q6_after_q6_of_q3_right_down - sin_q6_before_q6_of_q3_right_down)
                     )
-                    *radius_q6_right
+                    *radius_q6_right_down
                 )
 
                 def elsewhere_cos_q6_right_down(
@@ -1278,7 +3275,7 @@ class ArrayPrograms(Programs):
                 cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
                 sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
                 cos_q6_right_down, sin_q6_right_down = elsewhere(
-                    (cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right > 1e-11),
+                    (cost_q6_of_q3_right_down > 1e-12) & (radius_q6_right_down > 1e-11),
                     (cos_q6_right_down, sin_q6_right_down),
                     elsewhere_cos_q6_right_down,
                     (cos_q6_after_q6_of_q3_right_down, sin_q6_after_q6_of_q3_right_down),
@@ -1288,14 +3285,13 @@ class ArrayPrograms(Programs):
             cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
             sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
             cos_q6_right_down, sin_q6_right_down = elsewhere(
-                (radius_q6_right > 0.1) & (absolute(value_q6_of_q3_right_down) > 1.000000001*size_q6_of_q3),
+                (radius_q6_right_down > 0.1) & (absolute(value_q6_of_q3_right_down) > 1.000000001*size_q1_for_q3),
                 (cos_q6_right_down, sin_q6_right_down),
                 elsewhere_cos_q6_right_down,
                 (
-                    cos_q1_right, cos_q6_before_q6_of_q3_right_down, r33, radius_q6_right, sin_q1_right,
-                    sin_q6_before_q6_of_q3_right_down, value_q6_of_q3_right_down, wrist_x, wrist_x_from_q1_across_right,
-                    wrist_x_from_q1_along_right, wrist_y, wrist_y_from_q1_across, wrist_y_from_q1_along,
-                    wrist_y_from_q1_fixed,
+                    ahead_q1_right_down, cos_q5_right_down, cos_q6_before_q6_of_q3_right_down, r31, r32, r33,
+                    radius_q6_right_down, sin_q6_before_q6_of_q3_right_down, value_q6_of_q3_right_down,
+                    wrist_y_from_q1_across, wrist_y_from_q1_along, wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_right_down, sin_q6_right_down)
@@ -1303,20 +3299,20 @@ class ArrayPrograms(Programs):
         cos_q6_right_down = cos_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
         sin_q6_right_down = sin_q6_before_q6_of_q3_right_down  # kept where the rest can be reached
         cos_q6_right_down, sin_q6_right_down = elsewhere(
-            absolute(value_q6_of_q3_right_down) <= size_q6_of_q3,
+            absolute(value_q6_of_q3_right_down) <= size_q1_for_q3,
             (cos_q6_right_down, sin_q6_right_down),
             elsewhere_cos_q6_right_down,
             (
-                cos_q1_right, cos_q5_right, cos_q6_before_q6_of_q3_right_down, r31, r32, r33, radius_q6_right,
-                sin_q1_right, sin_q6_before_q6_of_q3_right_down, value_q6_of_q3_right_down, wrist_x, wrist_y, wrist_z,
+                ahead_q1_right_down, cos_q5_right_down, cos_q6_before_q6_of_q3_right_down, r31, r32, r33,
+                radius_q6_right_down, sin_q6_before_q6_of_q3_right_down, value_q6_of_q3_right_down, wrist_z,
             ),
         )
         r21_from_q1_before_q6_right_down = r31*cos_q6_right_down - r32*sin_q6_right_down
-        r21_from_q1_before_q56_right_down = r21_from_q1_before_q6_right_down*cos_q5_right - r33*radius_q6_right
-        # what the unknown links must span
-        wrist_x_from_q1_right_down = (
-            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_down
+        r21_from_q1_before_q56_right_down = (
+            r21_from_q1_before_q6_right_down*cos_q5_right_down - r33*radius_q6_right_down
         )
+        # what the unknown links must span
+        wrist_x_from_q1_right_down = ahead_q1_right_down - d5*r21_from_q1_before_q56_right_down
         r22_from_q1_before_q6_right_down = r32*cos_q6_right_down + r31*sin_q6_right_down
         # what the unknown links must span
         wrist_y_from_q1_right_down = wrist_z + d5*r22_from_q1_before_q6_right_down - d1
@@ -1329,7 +3325,8 @@ class ArrayPrograms(Programs):
         above_q3_right_down = (a3 + reach_right_down - a2)*(a2 + reach_right_down - a3)  # zero where it is the other
         product_q3_right_down = above_q3_right_down*below_q3_right_down
         refusal_right_down = select(product_q3_right_down >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
-        axis_a1_right = nearest_period(offset_a1 + degrees(sin_q1_right, cos_q1_right), near_a1)  # A1: its turn
+        # A1: its turn
+        axis_a1_right_down = nearest_period(offset_a1 + degrees(sin_q1_right_down, cos_q1_right_down), near_a1)
         # twice the scale, with the rounding of its parts
         both_q3_right_down = above_q3_right_down + below_q3_right_down
         sum_q3_right_down = select(absolute(both_q3_right_down) > 0.0, both_q3_right_down, 1.0)
@@ -1392,17 +3389,40 @@ class ArrayPrograms(Programs):
             offset_a4 + (angle_with_q4_right_down - angle_q2_right_up_down - angle_q3_right_up_down)/DEGREE, near_a4,
         )
         # A5: its turn
-        axis_a5_right_down = nearest_period(offset_a5 + degrees(radius_q6_right, cos_q5_right), near_a5)
+        axis_a5_right_down = nearest_period(offset_a5 + degrees(radius_q6_right_down, cos_q5_right_down), near_a5)
         # A6: its turn
         axis_a6_right_down = nearest_period(offset_a6 + degrees(sin_q6_right_down, cos_q6_right_down), near_a6)
+        # q5: linear pair in the q6 radius and r32 equations
+        cos_q5_right_up = r13*sin_q1_right_up - r23*cos_q1_right_up
+        r21_from_q1_right_up = r21*cos_q1_right_up - r11*sin_q1_right_up
+        r22_from_q1_right_up = r22*cos_q1_right_up - r12*sin_q1_right_up
+        # q6: direction and distance of a point
+        radius_q6_right_up = sqrt(
+            r21_from_q1_right_up*r21_from_q1_right_up + r22_from_q1_right_up*r22_from_q1_right_up
+        )
+
+        def elsewhere_cos_q6_before_q6_of_q3_right_up(ref_a6: Real) -> Reals:
+            free_a6 = (ref_a6 - offset_a6)*DEGREE
+            cos_q6_before_q6_of_q3_right_up = cos(free_a6)  # its reference where it is free
+            sin_q6_before_q6_of_q3_right_up = sin(free_a6)
+            return (cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up)
+
+        cos_q6_before_q6_of_q3_right_up = r21_from_q1_right_up/radius_q6_right_up  # its reference where it is free
+        sin_q6_before_q6_of_q3_right_up = -r22_from_q1_right_up/radius_q6_right_up
+        cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up = elsewhere(
+            radius_q6_right_up > 1e-11,
+            (cos_q6_before_q6_of_q3_right_up, sin_q6_before_q6_of_q3_right_up),
+            elsewhere_cos_q6_before_q6_of_q3_right_up,
+            (ref_a6,),
+        )
         r21_from_q1_before_q6_before_q6_of_q3_right_up = (
             r31*cos_q6_before_q6_of_q3_right_up - r32*sin_q6_before_q6_of_q3_right_up
         )
         r21_from_q1_before_q56_before_q6_of_q3_right_up = (
-            r21_from_q1_before_q6_before_q6_of_q3_right_up*cos_q5_right + r33*radius_q6_right
+            r21_from_q1_before_q6_before_q6_of_q3_right_up*cos_q5_right_up + r33*radius_q6_right_up
         )
         wrist_x_from_q1_before_q6_of_q3_right_up = (
-            wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_right_up
+            ahead_q1_right_up - d5*r21_from_q1_before_q56_before_q6_of_q3_right_up
         )
         r22_from_q1_before_q6_before_q6_of_q3_right_up = (
             r32*cos_q6_before_q6_of_q3_right_up + r31*sin_q6_before_q6_of_q3_right_up
@@ -1415,29 +3435,29 @@ class ArrayPrograms(Programs):
         )
 
         def elsewhere_cos_q6_right_up(
-            cos_q1_right: Real, cos_q5_right: Real, cos_q6_before_q6_of_q3_right_up: Real, r31: Real, r32: Real,
-            r33: Real, radius_q6_right: Real, sin_q1_right: Real, sin_q6_before_q6_of_q3_right_up: Real,
-            value_q6_of_q3_right_up: Real, wrist_x: Real, wrist_y: Real, wrist_z: Real,
+            ahead_q1_right_up: Real, cos_q5_right_up: Real, cos_q6_before_q6_of_q3_right_up: Real, r31: Real,
+            r32: Real, r33: Real, radius_q6_right_up: Real, sin_q6_before_q6_of_q3_right_up: Real,
+            value_q6_of_q3_right_up: Real, wrist_z: Real,
         ) -> Reals:
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
             wrist_y_from_q1_across = d5*r31
-            wrist_x_from_q1_along_right = -d5*r31*cos_q5_right
-            wrist_x_from_q1_across_right = d5*r32*cos_q5_right
 
             def elsewhere_cos_q6_right_up(
-                cos_q1_right: Real, cos_q6_before_q6_of_q3_right_up: Real, r33: Real, radius_q6_right: Real,
-                sin_q1_right: Real, sin_q6_before_q6_of_q3_right_up: Real, value_q6_of_q3_right_up: Real, wrist_x: Real,
-                wrist_x_from_q1_across_right: Real, wrist_x_from_q1_along_right: Real, wrist_y: Real,
-                wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real, wrist_y_from_q1_fixed: Real,
+                ahead_q1_right_up: Real, cos_q5_right_up: Real, cos_q6_before_q6_of_q3_right_up: Real, r31: Real,
+                r32: Real, r33: Real, radius_q6_right_up: Real, sin_q6_before_q6_of_q3_right_up: Real,
+                value_q6_of_q3_right_up: Real, wrist_y_from_q1_across: Real, wrist_y_from_q1_along: Real,
+                wrist_y_from_q1_fixed: Real,
             ) -> Reals:
-                wrist_x_from_q1_fixed_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r33*radius_q6_right
+                wrist_x_from_q1_fixed_right_up = ahead_q1_right_up - d5*r33*radius_q6_right_up
+                wrist_x_from_q1_along_right_up = -d5*r31*cos_q5_right_up
                 along_q6_of_q3_right_up = (
-                    2.0*wrist_x_from_q1_along_right*wrist_x_from_q1_fixed_right_up
+                    2.0*wrist_x_from_q1_along_right_up*wrist_x_from_q1_fixed_right_up
                     + 2.0*wrist_y_from_q1_along*wrist_y_from_q1_fixed
                 )
+                wrist_x_from_q1_across_right_up = d5*r32*cos_q5_right_up
                 across_q6_of_q3_right_up = (
-                    2.0*wrist_x_from_q1_across_right*wrist_x_from_q1_fixed_right_up
+                    2.0*wrist_x_from_q1_across_right_up*wrist_x_from_q1_fixed_right_up
                     + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
                 )
                 swing_q6_of_q3_right_up = sqrt(
@@ -1455,24 +3475,24 @@ class ArrayPrograms(Programs):
                 )
                 # the arc: cosines from its centre
                 highest_q6_of_q3_right_up = select(
-                    (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0,
+                    (size_q1_for_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up > 1.0,
                     1.0,
                     select(
-                        (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0, -1.0,
-                        (size_q6_of_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up,
+                        (size_q1_for_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up < -1.0, -1.0,
+                        (size_q1_for_q3 - level_q6_of_q3_right_up)/swing_q6_of_q3_right_up,
                     ),
                 )
                 lowest_q6_of_q3_right_up = select(
-                    (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up > 1.0,
+                    (-level_q6_of_q3_right_up - size_q1_for_q3)/swing_q6_of_q3_right_up > 1.0,
                     1.0,
                     select(
-                        (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up < -1.0,
+                        (-level_q6_of_q3_right_up - size_q1_for_q3)/swing_q6_of_q3_right_up < -1.0,
                         -1.0,
-                        (-level_q6_of_q3_right_up - size_q6_of_q3)/swing_q6_of_q3_right_up,
+                        (-level_q6_of_q3_right_up - size_q1_for_q3)/swing_q6_of_q3_right_up,
                     ),
                 )
                 highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up = elsewhere(
-                    swing_q6_of_q3_right_up > 1e-12*size_q6_of_q3,
+                    swing_q6_of_q3_right_up > 1e-12*size_q1_for_q3,
                     (highest_q6_of_q3_right_up, lowest_q6_of_q3_right_up),
                     elsewhere_highest_q6_of_q3_right_up,
                     (),
@@ -1512,7 +3532,7 @@ class ArrayPrograms(Programs):
                             sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up
                         )*(sin_q6_after_q6_of_q3_right_up - sin_q6_before_q6_of_q3_right_up)
                     )
-                    *radius_q6_right
+                    *radius_q6_right_up
                 )
 
                 def elsewhere_cos_q6_right_up(
@@ -1525,7 +3545,7 @@ class ArrayPrograms(Programs):
                 cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
                 sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
                 cos_q6_right_up, sin_q6_right_up = elsewhere(
-                    (cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right > 1e-11),
+                    (cost_q6_of_q3_right_up > 1e-12) & (radius_q6_right_up > 1e-11),
                     (cos_q6_right_up, sin_q6_right_up),
                     elsewhere_cos_q6_right_up,
                     (cos_q6_after_q6_of_q3_right_up, sin_q6_after_q6_of_q3_right_up),
@@ -1535,14 +3555,13 @@ class ArrayPrograms(Programs):
             cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
             sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
             cos_q6_right_up, sin_q6_right_up = elsewhere(
-                (radius_q6_right > 0.1) & (absolute(value_q6_of_q3_right_up) > 1.000000001*size_q6_of_q3),
+                (radius_q6_right_up > 0.1) & (absolute(value_q6_of_q3_right_up) > 1.000000001*size_q1_for_q3),
                 (cos_q6_right_up, sin_q6_right_up),
                 elsewhere_cos_q6_right_up,
                 (
-                    cos_q1_right, cos_q6_before_q6_of_q3_right_up, r33, radius_q6_right, sin_q1_right,
-                    sin_q6_before_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_x, wrist_x_from_q1_across_right,
-                    wrist_x_from_q1_along_right, wrist_y, wrist_y_from_q1_across, wrist_y_from_q1_along,
-                    wrist_y_from_q1_fixed,
+                    ahead_q1_right_up, cos_q5_right_up, cos_q6_before_q6_of_q3_right_up, r31, r32, r33,
+                    radius_q6_right_up, sin_q6_before_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_y_from_q1_across,
+                    wrist_y_from_q1_along, wrist_y_from_q1_fixed,
                 ),
             )
             return (cos_q6_right_up, sin_q6_right_up)
@@ -1550,18 +3569,18 @@ class ArrayPrograms(Programs):
         cos_q6_right_up = cos_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
         sin_q6_right_up = sin_q6_before_q6_of_q3_right_up  # kept where the rest can be reached
         cos_q6_right_up, sin_q6_right_up = elsewhere(
-            absolute(value_q6_of_q3_right_up) <= size_q6_of_q3,
+            absolute(value_q6_of_q3_right_up) <= size_q1_for_q3,
             (cos_q6_right_up, sin_q6_right_up),
             elsewhere_cos_q6_right_up,
             (
-                cos_q1_right, cos_q5_right, cos_q6_before_q6_of_q3_right_up, r31, r32, r33, radius_q6_right,
-                sin_q1_right, sin_q6_before_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_x, wrist_y, wrist_z,
+                ahead_q1_right_up, cos_q5_right_up, cos_q6_before_q6_of_q3_right_up, r31, r32, r33,
+                radius_q6_right_up, sin_q6_before_q6_of_q3_right_up, value_q6_of_q3_right_up, wrist_z,
             ),
         )
         r21_from_q1_before_q6_right_up = r31*cos_q6_right_up - r32*sin_q6_right_up
-        r21_from_q1_before_q56_right_up = r21_from_q1_before_q6_right_up*cos_q5_right + r33*radius_q6_right
+        r21_from_q1_before_q56_right_up = r21_from_q1_before_q6_right_up*cos_q5_right_up + r33*radius_q6_right_up
         # what the unknown links must span
-        wrist_x_from_q1_right_up = wrist_x*cos_q1_right + wrist_y*sin_q1_right - d5*r21_from_q1_before_q56_right_up
+        wrist_x_from_q1_right_up = ahead_q1_right_up - d5*r21_from_q1_before_q56_right_up
         r22_from_q1_before_q6_right_up = r32*cos_q6_right_up + r31*sin_q6_right_up
         # what the unknown links must span
         wrist_y_from_q1_right_up = wrist_z + d5*r22_from_q1_before_q6_right_up - d1
@@ -1573,6 +3592,8 @@ class ArrayPrograms(Programs):
         above_q3_right_up = (a3 + reach_right_up - a2)*(a2 + reach_right_up - a3)  # zero where it is the other
         product_q3_right_up = above_q3_right_up*below_q3_right_up
         refusal_right_up = select(product_q3_right_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
+        # A1: its turn
+        axis_a1_right_up = nearest_period(offset_a1 + degrees(sin_q1_right_up, cos_q1_right_up), near_a1)
         both_q3_right_up = above_q3_right_up + below_q3_right_up  # twice the scale, with the rounding of its parts
         sum_q3_right_up = select(absolute(both_q3_right_up) > 0.0, both_q3_right_up, 1.0)
         cos_q3_right_up = (above_q3_right_up - below_q3_right_up)/sum_q3_right_up
@@ -1630,7 +3651,7 @@ class ArrayPrograms(Programs):
             offset_a4 + (angle_with_q4_right_up - angle_q2_right_up_up - angle_q3_right_up_up)/DEGREE, near_a4,
         )
         # A5: its turn
-        axis_a5_right_up = nearest_period(offset_a5 + degrees(-radius_q6_right, cos_q5_right), near_a5)
+        axis_a5_right_up = nearest_period(offset_a5 + degrees(-radius_q6_right_up, cos_q5_right_up), near_a5)
         # A6: its turn
         axis_a6_right_up = nearest_period(offset_a6 + degrees(sin_q6_right_up, cos_q6_right_up), near_a6)
         angle_q2_right_down_down = atan2(direction_y_q2_right_down_down, direction_x_q2_right_down_down)
@@ -1657,56 +3678,56 @@ class ArrayPrograms(Programs):
         return (
             (
                 (
-                    axis_a1_left, axis_a2_left_up_down, axis_a3_left_up_down, axis_a4_left_up_down, axis_a5_left_down,
-                    axis_a6_left_down,
-                ),
-                status_left_down,
-            ),
-            (
-                (
-                    axis_a1_right, axis_a2_right_up_down, axis_a3_right_up_down, axis_a4_right_up_down,
-                    axis_a5_right_down, axis_a6_right_down,
-                ),
-                status_right_down,
-            ),
-            (
-                (
-                    axis_a1_left, axis_a2_left_down_down, axis_a3_left_down_down, axis_a4_left_down_down,
+                    axis_a1_left_down, axis_a2_left_up_down, axis_a3_left_up_down, axis_a4_left_up_down,
                     axis_a5_left_down, axis_a6_left_down,
                 ),
                 status_left_down,
             ),
             (
                 (
-                    axis_a1_right, axis_a2_right_down_down, axis_a3_right_down_down, axis_a4_right_down_down,
+                    axis_a1_right_down, axis_a2_right_up_down, axis_a3_right_up_down, axis_a4_right_up_down,
                     axis_a5_right_down, axis_a6_right_down,
                 ),
                 status_right_down,
             ),
             (
                 (
-                    axis_a1_left, axis_a2_left_up_up, axis_a3_left_up_up, axis_a4_left_up_up, axis_a5_left_up,
+                    axis_a1_left_down, axis_a2_left_down_down, axis_a3_left_down_down, axis_a4_left_down_down,
+                    axis_a5_left_down, axis_a6_left_down,
+                ),
+                status_left_down,
+            ),
+            (
+                (
+                    axis_a1_right_down, axis_a2_right_down_down, axis_a3_right_down_down, axis_a4_right_down_down,
+                    axis_a5_right_down, axis_a6_right_down,
+                ),
+                status_right_down,
+            ),
+            (
+                (
+                    axis_a1_left_up, axis_a2_left_up_up, axis_a3_left_up_up, axis_a4_left_up_up, axis_a5_left_up,
                     axis_a6_left_up,
                 ),
                 status_left_up,
             ),
             (
                 (
-                    axis_a1_right, axis_a2_right_up_up, axis_a3_right_up_up, axis_a4_right_up_up, axis_a5_right_up,
+                    axis_a1_right_up, axis_a2_right_up_up, axis_a3_right_up_up, axis_a4_right_up_up, axis_a5_right_up,
                     axis_a6_right_up,
                 ),
                 status_right_up,
             ),
             (
                 (
-                    axis_a1_left, axis_a2_left_down_up, axis_a3_left_down_up, axis_a4_left_down_up, axis_a5_left_up,
-                    axis_a6_left_up,
+                    axis_a1_left_up, axis_a2_left_down_up, axis_a3_left_down_up, axis_a4_left_down_up,
+                    axis_a5_left_up, axis_a6_left_up,
                 ),
                 status_left_up,
             ),
             (
                 (
-                    axis_a1_right, axis_a2_right_down_up, axis_a3_right_down_up, axis_a4_right_down_up,
+                    axis_a1_right_up, axis_a2_right_down_up, axis_a3_right_down_up, axis_a4_right_down_up,
                     axis_a5_right_up, axis_a6_right_up,
                 ),
                 status_right_up,

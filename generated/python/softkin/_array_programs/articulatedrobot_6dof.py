@@ -182,6 +182,7 @@ class ArrayPrograms(Programs):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
+        size_q1_for_q3 = k.size_q1_for_q3
         swing_scale_q3 = k.swing_scale_q3
         status = passed(position)
         # numbers of reasonable size
@@ -200,27 +201,128 @@ class ArrayPrograms(Programs):
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
         require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
-
-        def elsewhere_cos_q1(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)  # its reference where it is free
-            sin_q1 = sin(free_a1)
-            return (cos_q1, sin_q1)
-
-        ahead_q1 = root(ahead_squared_q1)*sigma_arm  # how far ahead of the axis the point is; negative: behind
-        divisor_q1 = distance_q1*distance_q1
-        cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/divisor_q1  # its reference where it is free
-        sin_q1 = (ahead_q1*wrist_y + d3*wrist_x)/divisor_q1
-        cos_q1, sin_q1 = elsewhere(distance_q1 > 1e-11*machine_scale, (cos_q1, sin_q1), elsewhere_cos_q1, (ref_a1,))
-        wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        # how far ahead of the axis the point is; negative: behind
+        ahead_q1_before_q1_for_q3 = root(ahead_squared_q1)*sigma_arm
+        wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
+        # a later step needs this of q1: no larger in size than
+        value_q1_for_q3 = (
+            wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 + wrist_y_from_q1*wrist_y_from_q1
+            - a2*a2 - effective_q3*effective_q3
+        )
+        rate_q1_for_q3 = -2.0*d3*wrist_x_from_q1_before_q1_for_q3  # how it changes with q1
+
+        def elsewhere_turn_q1_for_q3() -> Reals:
+            turn_q1_for_q3 = 0.0  # to the boundary of the later step
+            return (turn_q1_for_q3,)
+
+        excess_q1_for_q3 = select(
+            value_q1_for_q3 > 0.0, value_q1_for_q3 - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3,
+        )
+        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3  # to the boundary of the later step
+        (turn_q1_for_q3,) = elsewhere(
+            absolute(rate_q1_for_q3) > 1e-12*size_q1_for_q3,
+            (turn_q1_for_q3,),
+            elsewhere_turn_q1_for_q3,
+            (),
+        )
+        turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+        turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)/turned_length_q1_for_q3
+
+        def elsewhere_cos_q1_before_q1_for_q3(ref_a1: Real) -> Reals:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3 = cos(free_a1)  # its reference where it is free
+            sin_q1_before_q1_for_q3 = sin(free_a1)
+            return (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3)
+
+        divisor_q1 = distance_q1*distance_q1
+        # its reference where it is free
+        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/divisor_q1
+        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/divisor_q1
+        cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3 = elsewhere(
+            distance_q1 > 1e-11*machine_scale,
+            (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
+            elsewhere_cos_q1_before_q1_for_q3,
+            (ref_a1,),
+        )
+        turned_cos_q1_for_q3 = (
+            (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+        )
+        turned_sin_q1_for_q3 = (
+            (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+        )
+        # what is left of its own equation
+        turned_cost_q1_for_q3 = absolute(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+        # turned within rounding, where the rest can be reached
+        ahead_q1 = select(
+            ahead_squared_q1 > 1e-6*machine_scale*machine_scale,
+            ahead_q1_before_q1_for_q3,
+            select(
+                absolute(value_q1_for_q3) <= size_q1_for_q3,
+                ahead_q1_before_q1_for_q3,
+                select(
+                    turned_cost_q1_for_q3 > 1e-12*machine_scale, ahead_q1_before_q1_for_q3, turned_ahead_q1_for_q3,
+                ),
+            ),
+        )
+        wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         below_q3 = (a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)  # zero where it is stretched or folded
         above_q3 = (effective_q3 + reach - a2)*(a2 + reach - effective_q3)  # zero where it is the other
         product_q3 = above_q3*below_q3
         # q3: out of reach
         require(status, product_q3 >= -1e-12*swing_scale_q3*swing_scale_q3, Status.UNREACHABLE)
+
+        def elsewhere_cos_q1(
+            cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real, turned_cos_q1_for_q3: Real,
+            turned_cost_q1_for_q3: Real, turned_sin_q1_for_q3: Real, value_q1_for_q3: Real,
+        ) -> Reals:
+
+            def elsewhere_cos_q1(
+                cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real, turned_cos_q1_for_q3: Real,
+                turned_cost_q1_for_q3: Real, turned_sin_q1_for_q3: Real,
+            ) -> Reals:
+
+                def elsewhere_cos_q1(turned_cos_q1_for_q3: Real, turned_sin_q1_for_q3: Real) -> Reals:
+                    cos_q1 = turned_cos_q1_for_q3  # turned within rounding, where the rest can be reached
+                    sin_q1 = turned_sin_q1_for_q3  # turned within rounding, where the rest can be reached
+                    return (cos_q1, sin_q1)
+
+                cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+                sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+                cos_q1, sin_q1 = elsewhere(
+                    turned_cost_q1_for_q3 > 1e-12*machine_scale,
+                    (cos_q1, sin_q1),
+                    elsewhere_cos_q1,
+                    (turned_cos_q1_for_q3, turned_sin_q1_for_q3),
+                )
+                return (cos_q1, sin_q1)
+
+            cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+            sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+            cos_q1, sin_q1 = elsewhere(
+                absolute(value_q1_for_q3) <= size_q1_for_q3,
+                (cos_q1, sin_q1),
+                elsewhere_cos_q1,
+                (
+                    cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turned_cos_q1_for_q3, turned_cost_q1_for_q3,
+                    turned_sin_q1_for_q3,
+                ),
+            )
+            return (cos_q1, sin_q1)
+
+        cos_q1 = cos_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+        sin_q1 = sin_q1_before_q1_for_q3  # turned within rounding, where the rest can be reached
+        cos_q1, sin_q1 = elsewhere(
+            ahead_squared_q1 > 1e-6*machine_scale*machine_scale,
+            (cos_q1, sin_q1),
+            elsewhere_cos_q1,
+            (
+                cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3, turned_cos_q1_for_q3, turned_cost_q1_for_q3,
+                turned_sin_q1_for_q3, value_q1_for_q3,
+            ),
+        )
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -393,6 +495,7 @@ class ArrayPrograms(Programs):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
+        size_q1_for_q3 = k.size_q1_for_q3
         swing_scale_q3 = k.swing_scale_q3
         status = passed(position)
         # numbers of reasonable size
@@ -411,30 +514,226 @@ class ArrayPrograms(Programs):
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
         # q1: out of reach
         require(status, ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1, Status.UNREACHABLE)
-
-        def elsewhere_cos_q1_front(ref_a1: Real) -> Reals:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_front = cos(free_a1)  # its reference where it is free
-            sin_q1_front = sin(free_a1)
-            cos_q1_back = cos_q1_front  # its reference where it is free
-            sin_q1_back = sin_q1_front
-            return (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back)
-
-        ahead_q1_front = root(ahead_squared_q1)  # how far ahead of the axis the point is; negative: behind
-        divisor_q1 = distance_q1*distance_q1
-        cos_q1_front = (ahead_q1_front*wrist_x - d3*wrist_y)/divisor_q1  # its reference where it is free
-        sin_q1_front = (ahead_q1_front*wrist_y + d3*wrist_x)/divisor_q1
-        cos_q1_back = (-ahead_q1_front*wrist_x - d3*wrist_y)/divisor_q1  # its reference where it is free
-        sin_q1_back = (d3*wrist_x - ahead_q1_front*wrist_y)/divisor_q1
-        cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back = elsewhere(
-            distance_q1 > 1e-11*machine_scale,
-            (cos_q1_front, sin_q1_front, cos_q1_back, sin_q1_back),
-            elsewhere_cos_q1_front,
-            (ref_a1,),
-        )
-        wrist_x_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front - a1  # what the unknown links must span
         wrist_z = z - d6*r33
         wrist_y_from_q1 = wrist_z - d1  # what the unknown links must span
+        # how far ahead of the axis the point is; negative: behind
+        ahead_q1_before_q1_for_q3_front = root(ahead_squared_q1)
+        wrist_x_from_q1_before_q1_for_q3_front = ahead_q1_before_q1_for_q3_front - a1
+        # a later step needs this of q1: no larger in size than
+        value_q1_for_q3_front = (
+            wrist_x_from_q1_before_q1_for_q3_front*wrist_x_from_q1_before_q1_for_q3_front
+            + wrist_y_from_q1*wrist_y_from_q1 - a2*a2 - effective_q3*effective_q3
+        )
+        rate_q1_for_q3_front = -2.0*d3*wrist_x_from_q1_before_q1_for_q3_front  # how it changes with q1
+
+        def elsewhere_turn_q1_for_q3_front() -> Reals:
+            turn_q1_for_q3_front = 0.0  # to the boundary of the later step
+            return (turn_q1_for_q3_front,)
+
+        excess_q1_for_q3_front = select(
+            value_q1_for_q3_front > 0.0, value_q1_for_q3_front - size_q1_for_q3,
+            size_q1_for_q3 + value_q1_for_q3_front,
+        )
+        turn_q1_for_q3_front = -excess_q1_for_q3_front/rate_q1_for_q3_front  # to the boundary of the later step
+        (turn_q1_for_q3_front,) = elsewhere(
+            absolute(rate_q1_for_q3_front) > 1e-12*size_q1_for_q3,
+            (turn_q1_for_q3_front,),
+            elsewhere_turn_q1_for_q3_front,
+            (),
+        )
+
+        def elsewhere_cos_q1_before_q1_for_q3_front(ref_a1: Real) -> Reals:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3_front = cos(free_a1)  # its reference where it is free
+            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front  # its reference where it is free
+            sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
+            return (
+                cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
+                sin_q1_before_q1_for_q3_back,
+            )
+
+        divisor_q1 = distance_q1*distance_q1
+        # its reference where it is free
+        cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/divisor_q1
+        sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_front*wrist_y + d3*wrist_x)/divisor_q1
+        # its reference where it is free
+        cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_front*wrist_x - d3*wrist_y)/divisor_q1
+        sin_q1_before_q1_for_q3_back = (d3*wrist_x - ahead_q1_before_q1_for_q3_front*wrist_y)/divisor_q1
+        found = elsewhere(
+            distance_q1 > 1e-11*machine_scale,
+            (
+                cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
+                sin_q1_before_q1_for_q3_back,
+            ),
+            elsewhere_cos_q1_before_q1_for_q3_front,
+            (ref_a1,),
+        )
+        (
+            cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back,
+            sin_q1_before_q1_for_q3_back,
+        ) = found
+
+        def elsewhere_ahead_q1_front(
+            ahead_q1_before_q1_for_q3_front: Real, cos_q1_before_q1_for_q3_back: Real,
+            cos_q1_before_q1_for_q3_front: Real, sin_q1_before_q1_for_q3_back: Real,
+            sin_q1_before_q1_for_q3_front: Real, turn_q1_for_q3_front: Real, value_q1_for_q3_front: Real,
+            wrist_x: Real, wrist_y: Real, wrist_y_from_q1: Real,
+        ) -> Reals:
+            turned_length_q1_for_q3_front = root(1.0 + turn_q1_for_q3_front*turn_q1_for_q3_front)
+            turned_ahead_q1_for_q3_front = (
+                (ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_front)/turned_length_q1_for_q3_front
+            )
+
+            def elsewhere_ahead_q1_front(
+                ahead_q1_before_q1_for_q3_front: Real, cos_q1_before_q1_for_q3_front: Real,
+                sin_q1_before_q1_for_q3_front: Real, turn_q1_for_q3_front: Real, turned_ahead_q1_for_q3_front: Real,
+                turned_length_q1_for_q3_front: Real, wrist_x: Real, wrist_y: Real,
+            ) -> Reals:
+                turned_cos_q1_for_q3_front = (
+                    (cos_q1_before_q1_for_q3_front - turn_q1_for_q3_front*sin_q1_before_q1_for_q3_front)
+                    /turned_length_q1_for_q3_front
+                )
+                turned_sin_q1_for_q3_front = (
+                    (sin_q1_before_q1_for_q3_front + turn_q1_for_q3_front*cos_q1_before_q1_for_q3_front)
+                    /turned_length_q1_for_q3_front
+                )
+                # what is left of its own equation
+                turned_cost_q1_for_q3_front = absolute(
+                    d3 + turned_cos_q1_for_q3_front*wrist_y - turned_sin_q1_for_q3_front*wrist_x
+                )
+
+                def elsewhere_ahead_q1_front(
+                    turned_ahead_q1_for_q3_front: Real, turned_cos_q1_for_q3_front: Real, turned_sin_q1_for_q3_front: Real,
+                ) -> Reals:
+                    ahead_q1_front = turned_ahead_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                    cos_q1_front = turned_cos_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                    sin_q1_front = turned_sin_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                    return (ahead_q1_front, cos_q1_front, sin_q1_front)
+
+                ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
+                    turned_cost_q1_for_q3_front > 1e-12*machine_scale,
+                    (ahead_q1_front, cos_q1_front, sin_q1_front),
+                    elsewhere_ahead_q1_front,
+                    (turned_ahead_q1_for_q3_front, turned_cos_q1_for_q3_front, turned_sin_q1_for_q3_front),
+                )
+                return (ahead_q1_front, cos_q1_front, sin_q1_front)
+
+            ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+            cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+            sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+            ahead_q1_front, cos_q1_front, sin_q1_front = elsewhere(
+                absolute(value_q1_for_q3_front) <= size_q1_for_q3,
+                (ahead_q1_front, cos_q1_front, sin_q1_front),
+                elsewhere_ahead_q1_front,
+                (
+                    ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front, sin_q1_before_q1_for_q3_front,
+                    turn_q1_for_q3_front, turned_ahead_q1_for_q3_front, turned_length_q1_for_q3_front, wrist_x, wrist_y,
+                ),
+            )
+            wrist_x_from_q1_before_q1_for_q3_back = -a1 - ahead_q1_before_q1_for_q3_front
+            # a later step needs this of q1: no larger in size than
+            value_q1_for_q3_back = (
+                wrist_x_from_q1_before_q1_for_q3_back*wrist_x_from_q1_before_q1_for_q3_back
+                + wrist_y_from_q1*wrist_y_from_q1 - a2*a2 - effective_q3*effective_q3
+            )
+
+            def elsewhere_ahead_q1_back(
+                ahead_q1_before_q1_for_q3_front: Real, cos_q1_before_q1_for_q3_back: Real,
+                sin_q1_before_q1_for_q3_back: Real, value_q1_for_q3_back: Real, wrist_x: Real,
+                wrist_x_from_q1_before_q1_for_q3_back: Real, wrist_y: Real,
+            ) -> Reals:
+                rate_q1_for_q3_back = -2.0*d3*wrist_x_from_q1_before_q1_for_q3_back  # how it changes with q1
+
+                def elsewhere_turn_q1_for_q3_back() -> Reals:
+                    turn_q1_for_q3_back = 0.0  # to the boundary of the later step
+                    return (turn_q1_for_q3_back,)
+
+                excess_q1_for_q3_back = select(
+                    value_q1_for_q3_back > 0.0, value_q1_for_q3_back - size_q1_for_q3, size_q1_for_q3 + value_q1_for_q3_back,
+                )
+                turn_q1_for_q3_back = -excess_q1_for_q3_back/rate_q1_for_q3_back  # to the boundary of the later step
+                (turn_q1_for_q3_back,) = elsewhere(
+                    absolute(rate_q1_for_q3_back) > 1e-12*size_q1_for_q3,
+                    (turn_q1_for_q3_back,),
+                    elsewhere_turn_q1_for_q3_back,
+                    (),
+                )
+                turned_length_q1_for_q3_back = root(1.0 + turn_q1_for_q3_back*turn_q1_for_q3_back)
+                turned_cos_q1_for_q3_back = (
+                    (cos_q1_before_q1_for_q3_back - turn_q1_for_q3_back*sin_q1_before_q1_for_q3_back)
+                    /turned_length_q1_for_q3_back
+                )
+                turned_sin_q1_for_q3_back = (
+                    (sin_q1_before_q1_for_q3_back + turn_q1_for_q3_back*cos_q1_before_q1_for_q3_back)
+                    /turned_length_q1_for_q3_back
+                )
+                # what is left of its own equation
+                turned_cost_q1_for_q3_back = absolute(
+                    d3 + turned_cos_q1_for_q3_back*wrist_y - turned_sin_q1_for_q3_back*wrist_x
+                )
+
+                def elsewhere_ahead_q1_back(
+                    ahead_q1_before_q1_for_q3_front: Real, turn_q1_for_q3_back: Real, turned_cos_q1_for_q3_back: Real,
+                    turned_length_q1_for_q3_back: Real, turned_sin_q1_for_q3_back: Real,
+                ) -> Reals:
+                    turned_ahead_q1_for_q3_back = (
+                        (-ahead_q1_before_q1_for_q3_front - d3*turn_q1_for_q3_back)
+                        /turned_length_q1_for_q3_back
+                    )
+                    ahead_q1_back = turned_ahead_q1_for_q3_back  # turned within rounding, where the rest can be reached
+                    cos_q1_back = turned_cos_q1_for_q3_back  # turned within rounding, where the rest can be reached
+                    sin_q1_back = turned_sin_q1_for_q3_back  # turned within rounding, where the rest can be reached
+                    return (ahead_q1_back, cos_q1_back, sin_q1_back)
+
+                ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+                cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+                sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+                ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
+                    turned_cost_q1_for_q3_back > 1e-12*machine_scale,
+                    (ahead_q1_back, cos_q1_back, sin_q1_back),
+                    elsewhere_ahead_q1_back,
+                    (
+                        ahead_q1_before_q1_for_q3_front, turn_q1_for_q3_back, turned_cos_q1_for_q3_back,
+                        turned_length_q1_for_q3_back, turned_sin_q1_for_q3_back,
+                    ),
+                )
+                return (ahead_q1_back, cos_q1_back, sin_q1_back)
+
+            ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+            cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+            sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+            ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
+                absolute(value_q1_for_q3_back) <= size_q1_for_q3,
+                (ahead_q1_back, cos_q1_back, sin_q1_back),
+                elsewhere_ahead_q1_back,
+                (
+                    ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back, sin_q1_before_q1_for_q3_back,
+                    value_q1_for_q3_back, wrist_x, wrist_x_from_q1_before_q1_for_q3_back, wrist_y,
+                ),
+            )
+            return (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back)
+
+        ahead_q1_front = ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+        cos_q1_front = cos_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+        sin_q1_front = sin_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+        ahead_q1_back = -ahead_q1_before_q1_for_q3_front  # turned within rounding, where the rest can be reached
+        cos_q1_back = cos_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+        sin_q1_back = sin_q1_before_q1_for_q3_back  # turned within rounding, where the rest can be reached
+        ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back = elsewhere(
+            ahead_squared_q1 > 1e-6*machine_scale*machine_scale,
+            (ahead_q1_front, cos_q1_front, sin_q1_front, ahead_q1_back, cos_q1_back, sin_q1_back),
+            elsewhere_ahead_q1_front,
+            (
+                ahead_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_front,
+                sin_q1_before_q1_for_q3_back, sin_q1_before_q1_for_q3_front, turn_q1_for_q3_front,
+                value_q1_for_q3_front, wrist_x, wrist_y, wrist_y_from_q1,
+            ),
+        )
+        wrist_x_from_q1_front = ahead_q1_front - a1  # what the unknown links must span
         reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
         # zero where it is stretched or folded
         below_q3_front = (a2 + effective_q3 + reach_front)*(a2 + effective_q3 - reach_front)
@@ -695,7 +994,7 @@ class ArrayPrograms(Programs):
             offset_a6 + degrees(scaled_r21_from_q1234_front_up_up, scaled_r22_from_q1234_front_up_up),
             near_a6,
         )
-        wrist_x_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back - a1  # what the unknown links must span
+        wrist_x_from_q1_back = ahead_q1_back - a1  # what the unknown links must span
         reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
         # zero where it is stretched or folded
         below_q3_back = (a2 + effective_q3 + reach_back)*(a2 + effective_q3 - reach_back)

@@ -60,17 +60,9 @@ def branch(
         return Diagnosis(Status.BAD_INPUT, "not given: numbers of reasonable size", 0.0)
     wrist_x_closed = x - d6*r13
     wrist_y_closed = y - d6*r23
-    free_a1 = (ref_a1 - offset_a1)*DEGREE
     distance_q1_closed = sqrt(wrist_x_closed*wrist_x_closed + wrist_y_closed*wrist_y_closed)
-    if distance_q1_closed > 1e-11*machine_scale:
-        along_q1_closed = sigma_shoulder*wrist_x_closed
-        cos_q1_closed = along_q1_closed/distance_q1_closed
-        across_q1_closed = sigma_shoulder*wrist_y_closed
-        sin_q1_closed = across_q1_closed/distance_q1_closed
-    else:
-        cos_q1_closed = cos(free_a1)
-        sin_q1_closed = sin(free_a1)
-    wrist_x_from_q1_closed = wrist_x_closed*cos_q1_closed + wrist_y_closed*sin_q1_closed - a1
+    ahead_q1_closed = distance_q1_closed*sigma_shoulder
+    wrist_x_from_q1_closed = ahead_q1_closed - a1
     wrist_z_closed = z - d6*r33
     wrist_z_from_q1_closed = wrist_z_closed - d1
     reach_closed = sqrt(
@@ -88,6 +80,7 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
     if not ((searched > 0.5) or (sigma_crossing > 0.0)):
         return Diagnosis(Status.UNREACHABLE, "without the offset there is no second crossing", 0.0)
+    free_a1 = (ref_a1 - offset_a1)*DEGREE
     free_a2 = (ref_a2 - offset_a2)*DEGREE
     free_a5 = (ref_a5 - offset_a5)*DEGREE
     free_a6 = (ref_a6 - offset_a6)*DEGREE
@@ -128,10 +121,8 @@ def branch(
         )
         r31_from_q1_before_q56_tried = r31_from_q1_before_q6_tried*cos_q5_tried + r33*sin_q5_tried
         sin_q23_tried = -r31_from_q1_before_q56_tried
-        x_from_q1_of_q2_tried = (
-            wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1 - a3*sin_q23_tried
-            - d4*r33_from_q1_before_q456_tried
-        )
+        ahead_q1_tried = distance_q1_tried*sigma_shoulder
+        x_from_q1_of_q2_tried = ahead_q1_tried - a1 - a3*sin_q23_tried - d4*r33_from_q1_before_q456_tried
         wrist_z_tried = z + j6_offset_x*r32*sin_q6_tried - d6*r33 - j6_offset_x*r31*cos_q6_tried
         z_from_q1_of_q2_tried = wrist_z_tried + d4*sin_q23_tried - d1 - a3*r33_from_q1_before_q456_tried
         reach_tried = sqrt(x_from_q1_of_q2_tried*x_from_q1_of_q2_tried + z_from_q1_of_q2_tried*z_from_q1_of_q2_tried)
@@ -255,6 +246,14 @@ def branch(
         cos_q6 = cos_q6_tried
         sin_q6 = sin_q6_tried
     else:
+        if distance_q1_closed > 1e-11*machine_scale:
+            along_q1_closed = sigma_shoulder*wrist_x_closed
+            cos_q1_closed = along_q1_closed/distance_q1_closed
+            across_q1_closed = sigma_shoulder*wrist_y_closed
+            sin_q1_closed = across_q1_closed/distance_q1_closed
+        else:
+            cos_q1_closed = cos(free_a1)
+            sin_q1_closed = sin(free_a1)
         cos_q1 = cos_q1_closed
         sin_q1 = sin_q1_closed
         both_q3_closed = above_q3_closed + below_q3_closed

@@ -50,7 +50,7 @@ def branch(
     single_a4 = k.single_a4
     single_a5 = k.single_a5
     single_a6 = k.single_a6
-    size_q6_of_q3 = k.size_q6_of_q3
+    size_q1_for_q3 = k.size_q1_for_q3
     if not (
         -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
         and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
@@ -64,15 +64,245 @@ def branch(
     if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
         missing = 0.5*abs(d4 - distance_q1) + 0.5*abs(d4 + distance_q1) - distance_q1
         return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
+    ahead_q1_before_q1_for_q3 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_shoulder
     if distance_q1 > 1e-11*machine_scale:
-        ahead_q1 = -(sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_shoulder
         divisor_q1 = distance_q1*distance_q1
-        cos_q1 = (ahead_q1*wrist_x - d4*wrist_y)/divisor_q1
-        sin_q1 = (ahead_q1*wrist_y + d4*wrist_x)/divisor_q1
+        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1
+        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/divisor_q1
     else:
         free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_q1 = cos(free_a1)
-        sin_q1 = sin(free_a1)
+        cos_q1_before_q1_for_q3 = cos(free_a1)
+        sin_q1_before_q1_for_q3 = sin(free_a1)
+    wrist_z = z - d6*r33
+    if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
+        ahead_q1 = ahead_q1_before_q1_for_q3
+        cos_q1 = cos_q1_before_q1_for_q3
+        sin_q1 = sin_q1_before_q1_for_q3
+    else:
+        free_a6 = (ref_a6 - offset_a6)*DEGREE
+        r21_from_q1_before_q1_for_q3 = r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3
+        r22_from_q1_before_q1_for_q3 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
+        radius_q6_before_q1_for_q3 = sqrt(
+            r21_from_q1_before_q1_for_q3*r21_from_q1_before_q1_for_q3
+            + r22_from_q1_before_q1_for_q3*r22_from_q1_before_q1_for_q3
+        )
+        q6_radius_of_q5_before_q1_for_q3 = radius_q6_before_q1_for_q3*sigma_wrist
+        cos_q5_before_q1_for_q3 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
+        r21_from_q1_rate_q1_for_q3 = -r11*cos_q1_before_q1_for_q3 - r21*sin_q1_before_q1_for_q3
+        r22_from_q1_rate_q1_for_q3 = -r12*cos_q1_before_q1_for_q3 - r22*sin_q1_before_q1_for_q3
+        along_q6_rate_q1_for_q3 = -r21_from_q1_rate_q1_for_q3*sigma_wrist
+        across_q6_rate_q1_for_q3 = r22_from_q1_rate_q1_for_q3*sigma_wrist
+        if radius_q6_before_q1_for_q3 > 1e-11:
+            along_q6_before_q1_for_q3 = -r21_from_q1_before_q1_for_q3*sigma_wrist
+            cos_q6_before_q1_for_q3 = along_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
+            across_q6_before_q1_for_q3 = r22_from_q1_before_q1_for_q3*sigma_wrist
+            sin_q6_before_q1_for_q3 = across_q6_before_q1_for_q3/radius_q6_before_q1_for_q3
+            radius_q6_rate_q1_for_q3 = (
+                0.5
+                *(
+                    2.0*r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                    + 2.0*r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                )
+                /radius_q6_before_q1_for_q3
+            )
+            cos_q6_rate_q1_for_q3 = (
+                along_q6_rate_q1_for_q3/radius_q6_before_q1_for_q3
+                - along_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3/(
+                    radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                )
+            )
+            sin_q6_rate_q1_for_q3 = (
+                across_q6_rate_q1_for_q3/radius_q6_before_q1_for_q3
+                - across_q6_before_q1_for_q3*radius_q6_rate_q1_for_q3/(
+                    radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                )
+            )
+        else:
+            cos_q6_before_q1_for_q3 = cos(free_a6)
+            sin_q6_before_q1_for_q3 = sin(free_a6)
+            if radius_q6_before_q1_for_q3 > 0.0:
+                radius_q6_rate_q1_for_q3 = (
+                    0.5
+                    *(
+                        2.0*r21_from_q1_before_q1_for_q3*r21_from_q1_rate_q1_for_q3
+                        + 2.0*r22_from_q1_before_q1_for_q3*r22_from_q1_rate_q1_for_q3
+                    )
+                    /radius_q6_before_q1_for_q3
+                )
+            else:
+                radius_q6_rate_q1_for_q3 = 0.0
+            cos_q6_rate_q1_for_q3 = 0.0
+            sin_q6_rate_q1_for_q3 = 0.0
+        r21_from_q1_before_q6_before_q1_for_q3 = r31*cos_q6_before_q1_for_q3 - r32*sin_q6_before_q1_for_q3
+        r21_from_q1_before_q56_before_q1_for_q3 = (
+            r21_from_q1_before_q6_before_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_before_q1_for_q3*r33
+        )
+        wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q1_for_q3
+        r22_from_q1_before_q6_before_q1_for_q3 = r32*cos_q6_before_q1_for_q3 + r31*sin_q6_before_q1_for_q3
+        wrist_y_from_q1_before_q1_for_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q1_for_q3 - d1
+        value_q1_for_q3 = (
+            wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3
+            + wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_before_q1_for_q3 - a2*a2 - a3*a3
+        )
+        if abs(value_q1_for_q3) <= size_q1_for_q3:
+            ahead_q1 = ahead_q1_before_q1_for_q3
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            r23_from_q1_rate_q1_for_q3 = -r13*cos_q1_before_q1_for_q3 - r23*sin_q1_before_q1_for_q3
+            q6_radius_of_q5_rate_q1_for_q3 = radius_q6_rate_q1_for_q3*sigma_wrist
+            r21_from_q1_before_q6_rate_q1_for_q3 = r31*cos_q6_rate_q1_for_q3 - r32*sin_q6_rate_q1_for_q3
+            r21_from_q1_before_q56_rate_q1_for_q3 = (
+                r21_from_q1_before_q6_rate_q1_for_q3*cos_q5_before_q1_for_q3 - q6_radius_of_q5_rate_q1_for_q3*r33
+                - r21_from_q1_before_q6_before_q1_for_q3*r23_from_q1_rate_q1_for_q3
+            )
+            wrist_x_from_q1_rate_q1_for_q3 = -d4 - d5*r21_from_q1_before_q56_rate_q1_for_q3
+            r22_from_q1_before_q6_rate_q1_for_q3 = r32*cos_q6_rate_q1_for_q3 + r31*sin_q6_rate_q1_for_q3
+            wrist_y_from_q1_rate_q1_for_q3 = d5*r22_from_q1_before_q6_rate_q1_for_q3
+            rate_q1_for_q3 = (
+                2.0*wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_rate_q1_for_q3
+                + 2.0*wrist_y_from_q1_before_q1_for_q3*wrist_y_from_q1_rate_q1_for_q3
+            )
+            along_q6_q1_for_q3 = (
+                2.0*d5*r32*wrist_z - 2.0*d1*d5*r32 - 2.0*ahead_q1_before_q1_for_q3*d5*r31*cos_q5_before_q1_for_q3
+            )
+            across_q6_q1_for_q3 = (
+                2.0*d5*r31*wrist_z + 2.0*ahead_q1_before_q1_for_q3*d5*r32*cos_q5_before_q1_for_q3 - 2.0*d1*d5*r31
+            )
+            swing_q6_q1_for_q3 = sqrt(across_q6_q1_for_q3*across_q6_q1_for_q3 + along_q6_q1_for_q3*along_q6_q1_for_q3)
+            if swing_q6_q1_for_q3 > 9.999999000000001e-13*size_q1_for_q3:
+                level_q6_q1_for_q3 = (
+                    value_q1_for_q3 - across_q6_q1_for_q3*sin_q6_before_q1_for_q3 - along_q6_q1_for_q3*cos_q6_before_q1_for_q3
+                )
+                highest_q6_q1_for_q3 = (
+                    1.0
+                    if (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 > 1.0
+                    else (
+                        -1.0
+                        if (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3 < -1.0
+                        else (0.9999999*size_q1_for_q3 - level_q6_q1_for_q3)/swing_q6_q1_for_q3
+                    )
+                )
+                lowest_q6_q1_for_q3 = (
+                    1.0
+                    if (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 > 1.0
+                    else (
+                        -1.0
+                        if (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3 < -1.0
+                        else (-level_q6_q1_for_q3 - 0.9999999*size_q1_for_q3)/swing_q6_q1_for_q3
+                    )
+                )
+            else:
+                highest_q6_q1_for_q3 = 1.0
+                lowest_q6_q1_for_q3 = -1.0
+            near_q6_q1_for_q3 = arctan2(
+                root((1.0 - highest_q6_q1_for_q3)*(1.0 + highest_q6_q1_for_q3)) + 0.0, highest_q6_q1_for_q3 + 0.0,
+            )
+            far_q6_q1_for_q3 = arctan2(
+                root((1.0 - lowest_q6_q1_for_q3)*(1.0 + lowest_q6_q1_for_q3)) + 0.0, lowest_q6_q1_for_q3 + 0.0,
+            )
+            centre_q6_q1_for_q3 = arctan2(across_q6_q1_for_q3 + 0.0, along_q6_q1_for_q3 + 0.0)
+            angle_q6_q1_for_q3 = arctan2(sin_q6_before_q1_for_q3 + 0.0, cos_q6_before_q1_for_q3 + 0.0)
+            side_q6_q1_for_q3 = (
+                1.0
+                if along_q6_q1_for_q3*sin_q6_before_q1_for_q3 - across_q6_q1_for_q3*cos_q6_before_q1_for_q3 >= 0.0
+                else -1.0
+            )
+            moved_q6_q1_for_q3 = nearest_on_arc(
+                angle_q6_q1_for_q3, centre_q6_q1_for_q3 + 0.5*(far_q6_q1_for_q3 + near_q6_q1_for_q3)*side_q6_q1_for_q3,
+                0.5*far_q6_q1_for_q3 - 0.5*near_q6_q1_for_q3,
+            )
+            near_cos_q6_q1_for_q3 = cos(moved_q6_q1_for_q3)
+            near_sin_q6_q1_for_q3 = sin(moved_q6_q1_for_q3)
+            near_q_q1_for_q3 = near_cos_q6_q1_for_q3*r12*sigma_wrist + near_sin_q6_q1_for_q3*r11*sigma_wrist
+            near_p_q1_for_q3 = -near_cos_q6_q1_for_q3*r22*sigma_wrist - near_sin_q6_q1_for_q3*r21*sigma_wrist
+            near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
+            near_length_q1_for_q3 = near_radius_q1_for_q3 if near_radius_q1_for_q3 > 1e-12 else 1.0
+            near_along_q1_for_q3 = (
+                (near_cos_q6_q1_for_q3*r11*sigma_wrist - near_sin_q6_q1_for_q3*r12*sigma_wrist)*near_p_q1_for_q3
+                - (near_sin_q6_q1_for_q3*r22*sigma_wrist - near_cos_q6_q1_for_q3*r21*sigma_wrist)*near_q_q1_for_q3
+            )
+            near_side_q1_for_q3 = -1.0 if near_along_q1_for_q3 < 0.0 else 1.0
+            near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3
+            near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3
+            if distance_q1 > 1e-11*machine_scale:
+                near_cost_q1_for_q3 = abs(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
+                mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3
+                mirrored_cos_q6_q1_for_q3 = cos(mirrored_q6_q1_for_q3)
+                mirrored_sin_q6_q1_for_q3 = sin(mirrored_q6_q1_for_q3)
+                mirrored_q_q1_for_q3 = mirrored_cos_q6_q1_for_q3*r12*sigma_wrist + mirrored_sin_q6_q1_for_q3*r11*sigma_wrist
+                mirrored_p_q1_for_q3 = -mirrored_cos_q6_q1_for_q3*r22*sigma_wrist - mirrored_sin_q6_q1_for_q3*r21*sigma_wrist
+                mirrored_radius_q1_for_q3 = sqrt(
+                    mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
+                )
+                mirrored_length_q1_for_q3 = mirrored_radius_q1_for_q3 if mirrored_radius_q1_for_q3 > 1e-12 else 1.0
+                mirrored_along_q1_for_q3 = (
+                    (
+                        mirrored_cos_q6_q1_for_q3*r11*sigma_wrist - mirrored_sin_q6_q1_for_q3*r12*sigma_wrist
+                    )*mirrored_p_q1_for_q3
+                    - (
+                        mirrored_sin_q6_q1_for_q3*r22*sigma_wrist - mirrored_cos_q6_q1_for_q3*r21*sigma_wrist
+                    )*mirrored_q_q1_for_q3
+                )
+                mirrored_side_q1_for_q3 = -1.0 if mirrored_along_q1_for_q3 < 0.0 else 1.0
+                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
+                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
+                mirrored_cost_q1_for_q3 = abs(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
+                if near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3:
+                    swept_cost_q1_for_q3 = near_cost_q1_for_q3
+                    swept_cos_q1_for_q3 = near_cos_q1_for_q3
+                    swept_sin_q1_for_q3 = near_sin_q1_for_q3
+                else:
+                    swept_cost_q1_for_q3 = mirrored_cost_q1_for_q3
+                    swept_cos_q1_for_q3 = mirrored_cos_q1_for_q3
+                    swept_sin_q1_for_q3 = mirrored_sin_q1_for_q3
+            else:
+                swept_cost_q1_for_q3 = 0.0
+                swept_cos_q1_for_q3 = near_cos_q1_for_q3
+                swept_sin_q1_for_q3 = near_sin_q1_for_q3
+            swept_ahead_q1_for_q3 = swept_cos_q1_for_q3*wrist_x + swept_sin_q1_for_q3*wrist_y
+            if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
+                excess_q1_for_q3 = (
+                    value_q1_for_q3 - size_q1_for_q3
+                    if value_q1_for_q3 > 0.0
+                    else size_q1_for_q3 + value_q1_for_q3
+                )
+                turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+                if (turn_q1_for_q3*turn_q1_for_q3 > 1e-12) or (
+                    (across_q6_rate_q1_for_q3*across_q6_rate_q1_for_q3 + along_q6_rate_q1_for_q3*along_q6_rate_q1_for_q3)
+                    *turn_q1_for_q3*turn_q1_for_q3 > 1e-12*radius_q6_before_q1_for_q3*radius_q6_before_q1_for_q3
+                ):
+                    best_cost_q1_for_q3 = swept_cost_q1_for_q3
+                    best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
+                    best_cos_q1_for_q3 = swept_cos_q1_for_q3
+                    best_sin_q1_for_q3 = swept_sin_q1_for_q3
+                else:
+                    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+                    turned_cos_q1_for_q3 = (
+                        (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                    )
+                    turned_sin_q1_for_q3 = (
+                        (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+                    )
+                    turned_cost_q1_for_q3 = abs(d4 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+                    best_cost_q1_for_q3 = turned_cost_q1_for_q3
+                    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d4*turn_q1_for_q3)/turned_length_q1_for_q3
+                    best_ahead_q1_for_q3 = turned_ahead_q1_for_q3
+                    best_cos_q1_for_q3 = turned_cos_q1_for_q3
+                    best_sin_q1_for_q3 = turned_sin_q1_for_q3
+            else:
+                best_cost_q1_for_q3 = swept_cost_q1_for_q3
+                best_ahead_q1_for_q3 = swept_ahead_q1_for_q3
+                best_cos_q1_for_q3 = swept_cos_q1_for_q3
+                best_sin_q1_for_q3 = swept_sin_q1_for_q3
+            if best_cost_q1_for_q3 > 1e-12*machine_scale:
+                ahead_q1 = ahead_q1_before_q1_for_q3
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                ahead_q1 = best_ahead_q1_for_q3
+                cos_q1 = best_cos_q1_for_q3
+                sin_q1 = best_sin_q1_for_q3
     cos_q5 = r13*sin_q1 - r23*cos_q1
     r21_from_q1 = r21*cos_q1 - r11*sin_q1
     r22_from_q1 = r22*cos_q1 - r12*sin_q1
@@ -89,23 +319,22 @@ def branch(
         sin_q6_before_q6_of_q3 = sin(free_a6)
     r21_from_q1_before_q6_before_q6_of_q3 = r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3
     r21_from_q1_before_q56_before_q6_of_q3 = r21_from_q1_before_q6_before_q6_of_q3*cos_q5 - q6_radius_of_q5*r33
-    wrist_x_from_q1_before_q6_of_q3 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
+    wrist_x_from_q1_before_q6_of_q3 = ahead_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
     r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
-    wrist_z = z - d6*r33
     wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
     value_q6_of_q3 = (
         wrist_x_from_q1_before_q6_of_q3*wrist_x_from_q1_before_q6_of_q3
         + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2*a2 - a3*a3
     )
-    if abs(value_q6_of_q3) <= size_q6_of_q3:
+    if abs(value_q6_of_q3) <= size_q1_for_q3:
         cos_q6 = cos_q6_before_q6_of_q3
         sin_q6 = sin_q6_before_q6_of_q3
     else:
-        if radius_q6 > 0.1 and abs(value_q6_of_q3) > 1.000000001*size_q6_of_q3:
+        if radius_q6 > 0.1 and abs(value_q6_of_q3) > 1.000000001*size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
         else:
-            wrist_x_from_q1_fixed = wrist_x*cos_q1 + wrist_y*sin_q1 + d5*q6_radius_of_q5*r33
+            wrist_x_from_q1_fixed = ahead_q1 + d5*q6_radius_of_q5*r33
             wrist_x_from_q1_along = -d5*r31*cos_q5
             wrist_y_from_q1_fixed = wrist_z - d1
             wrist_y_from_q1_along = d5*r32
@@ -118,26 +347,26 @@ def branch(
                 2.0*wrist_x_from_q1_across*wrist_x_from_q1_fixed + 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             )
             swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
-            if swing_q6_of_q3 > 1e-12*size_q6_of_q3:
+            if swing_q6_of_q3 > 1e-12*size_q1_for_q3:
                 level_q6_of_q3 = (
                     value_q6_of_q3 - across_q6_of_q3*sin_q6_before_q6_of_q3 - along_q6_of_q3*cos_q6_before_q6_of_q3
                 )
                 highest_q6_of_q3 = (
                     1.0
-                    if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
+                    if (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3 > 1.0
                     else (
                         -1.0
-                        if (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
-                        else (size_q6_of_q3 - level_q6_of_q3)/swing_q6_of_q3
+                        if (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3 < -1.0
+                        else (size_q1_for_q3 - level_q6_of_q3)/swing_q6_of_q3
                     )
                 )
                 lowest_q6_of_q3 = (
                     1.0
-                    if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                    if (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                     else (
                         -1.0
-                        if (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                        else (-level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                        if (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                        else (-level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                     )
                 )
             else:
@@ -173,7 +402,7 @@ def branch(
                 sin_q6 = sin_q6_after_q6_of_q3
     r21_from_q1_before_q6 = r31*cos_q6 - r32*sin_q6
     r21_from_q1_before_q56 = r21_from_q1_before_q6*cos_q5 - q6_radius_of_q5*r33
-    wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - d5*r21_from_q1_before_q56
+    wrist_x_from_q1 = ahead_q1 - d5*r21_from_q1_before_q56
     r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
     wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1
     reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from softkin._configuration import turn_inside
-from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
+from softkin._scalar import DEGREE, arctan2, cos, nearest_period, root, sin, sqrt
 from softkin._types import Diagnosis, Reals, Rotation, Status, Vector
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ def branch(
     single_a4 = k.single_a4
     single_a5 = k.single_a5
     single_a6 = k.single_a6
+    size_q1_for_q3 = k.size_q1_for_q3
     swing_scale_q3 = k.swing_scale_q3
     if not (
         -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -65,18 +66,55 @@ def branch(
     if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
         missing = 0.5*abs(d3 - distance_q1) + 0.5*abs(d3 + distance_q1) - distance_q1
         return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-    if distance_q1 > 1e-11*machine_scale:
-        ahead_q1 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
-        divisor_q1 = distance_q1*distance_q1
-        cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/divisor_q1
-        sin_q1 = (ahead_q1*wrist_y + d3*wrist_x)/divisor_q1
-    else:
-        free_a1 = (ref_a1 - offset_a1)*DEGREE
-        cos_q1 = cos(free_a1)
-        sin_q1 = sin(free_a1)
-    wrist_x_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1 - a1
     wrist_z = z - d6*r33
     wrist_y_from_q1 = wrist_z - d1
+    ahead_q1_before_q1_for_q3 = (sqrt(ahead_squared_q1) if ahead_squared_q1 > 0.0 else 0.0)*sigma_arm
+    wrist_x_from_q1_before_q1_for_q3 = ahead_q1_before_q1_for_q3 - a1
+    value_q1_for_q3 = (
+        wrist_x_from_q1_before_q1_for_q3*wrist_x_from_q1_before_q1_for_q3 + wrist_y_from_q1*wrist_y_from_q1
+        - a2*a2 - effective_q3*effective_q3
+    )
+    rate_q1_for_q3 = -2.0*d3*wrist_x_from_q1_before_q1_for_q3
+    if abs(rate_q1_for_q3) > 1e-12*size_q1_for_q3:
+        excess_q1_for_q3 = (
+            value_q1_for_q3 - size_q1_for_q3
+            if value_q1_for_q3 > 0.0
+            else size_q1_for_q3 + value_q1_for_q3
+        )
+        turn_q1_for_q3 = -excess_q1_for_q3/rate_q1_for_q3
+    else:
+        turn_q1_for_q3 = 0.0
+    turned_length_q1_for_q3 = root(1.0 + turn_q1_for_q3*turn_q1_for_q3)
+    turned_ahead_q1_for_q3 = (ahead_q1_before_q1_for_q3 - d3*turn_q1_for_q3)/turned_length_q1_for_q3
+    if distance_q1 > 1e-11*machine_scale:
+        divisor_q1 = distance_q1*distance_q1
+        cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/divisor_q1
+        sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/divisor_q1
+    else:
+        free_a1 = (ref_a1 - offset_a1)*DEGREE
+        cos_q1_before_q1_for_q3 = cos(free_a1)
+        sin_q1_before_q1_for_q3 = sin(free_a1)
+    turned_cos_q1_for_q3 = (
+        (cos_q1_before_q1_for_q3 - turn_q1_for_q3*sin_q1_before_q1_for_q3)/turned_length_q1_for_q3
+    )
+    turned_sin_q1_for_q3 = (
+        (sin_q1_before_q1_for_q3 + turn_q1_for_q3*cos_q1_before_q1_for_q3)/turned_length_q1_for_q3
+    )
+    turned_cost_q1_for_q3 = abs(d3 + turned_cos_q1_for_q3*wrist_y - turned_sin_q1_for_q3*wrist_x)
+    ahead_q1 = (
+        ahead_q1_before_q1_for_q3
+        if ahead_squared_q1 > 1e-6*machine_scale*machine_scale
+        else (
+            ahead_q1_before_q1_for_q3
+            if abs(value_q1_for_q3) <= size_q1_for_q3
+            else (
+                ahead_q1_before_q1_for_q3
+                if turned_cost_q1_for_q3 > 1e-12*machine_scale
+                else turned_ahead_q1_for_q3
+            )
+        )
+    )
+    wrist_x_from_q1 = ahead_q1 - a1
     reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
     below_q3 = (a2 + effective_q3 + reach)*(a2 + effective_q3 - reach)
     above_q3 = (effective_q3 + reach - a2)*(a2 + reach - effective_q3)
@@ -87,6 +125,20 @@ def branch(
             + 0.5*abs(a2 + effective_q3 - reach) + 0.5*abs(a2 + effective_q3 + reach) - a2 - effective_q3 - reach
         )
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+    if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
+        cos_q1 = cos_q1_before_q1_for_q3
+        sin_q1 = sin_q1_before_q1_for_q3
+    else:
+        if abs(value_q1_for_q3) <= size_q1_for_q3:
+            cos_q1 = cos_q1_before_q1_for_q3
+            sin_q1 = sin_q1_before_q1_for_q3
+        else:
+            if turned_cost_q1_for_q3 > 1e-12*machine_scale:
+                cos_q1 = cos_q1_before_q1_for_q3
+                sin_q1 = sin_q1_before_q1_for_q3
+            else:
+                cos_q1 = turned_cos_q1_for_q3
+                sin_q1 = turned_sin_q1_for_q3
     open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1
     near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
     axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE

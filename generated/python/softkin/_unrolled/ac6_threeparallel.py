@@ -54,11 +54,12 @@ def unrolled(k: Constants) -> Unrolled:
     single_a4 = k.single_a4
     single_a5 = k.single_a5
     single_a6 = k.single_a6
-    size_q6_of_q3 = k.size_q6_of_q3
+    size_q1_for_q3 = k.size_q1_for_q3
+    machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     a2_squared_plus_a3_squared = a2*a2 + a3*a3
-    size_q6_of_q3_times_rounding = 1e-12*size_q6_of_q3
-    share_of_size_q6_of_q3 = 1.000000001*size_q6_of_q3
+    size_q1_for_q3_times_rounding = 1e-12*size_q1_for_q3
+    share_of_size_q1_for_q3 = 1.000000001*size_q1_for_q3
     scale_q3_squared_times_rounding = 1e-12*scale_q3*scale_q3
     offset_a5_times_2 = 2.0*offset_a5
     a2_plus_a3 = a2 + a3
@@ -81,41 +82,41 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # near a fold
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+            return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1)
+            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(3.0,)
-            ahead_q1 = 0.0
+            ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             d4_times_wrist_y = d4*wrist_y
-            ahead_q1_times_wrist_x = ahead_q1*wrist_x
+            ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
-            cos_q1_left = (-ahead_q1_times_wrist_x - d4_times_wrist_y)/divisor_q1
-            ahead_q1_times_wrist_y = ahead_q1*wrist_y
+            cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y)/divisor_q1
+            ahead_q1_before_q1_for_q3_times_wrist_y = ahead_q1_before_q1_for_q3*wrist_y
             d4_times_wrist_x = d4*wrist_x
-            sin_q1_left = (d4_times_wrist_x - ahead_q1_times_wrist_y)/divisor_q1
-            point_from_q1_left = -ahead_q1
-            cos_q1_right = (ahead_q1_times_wrist_x - d4_times_wrist_y)/divisor_q1
-            sin_q1_right = (ahead_q1_times_wrist_y + d4_times_wrist_x)/divisor_q1
-            point_from_q1_right = -point_from_q1_left
+            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y)/divisor_q1
+            cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_y + d4_times_wrist_x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_left = cos(free_a1)
-            sin_q1_left = sin(free_a1)
-            point_from_q1_left = wrist_x*cos_q1_left + wrist_y*sin_q1_left
-            cos_q1_right = cos_q1_left
-            sin_q1_right = sin_q1_left
-            point_from_q1_right = wrist_x*cos_q1_right + wrist_y*sin_q1_right
-        minus_r21_from_q1 = r11*sin_q1_left - r21*cos_q1_left
-        r22_from_q1 = r22*cos_q1_left - r12*sin_q1_left
+            cos_q1_before_q1_for_q3_left = cos(free_a1)
+            sin_q1_before_q1_for_q3_left = sin(free_a1)
+            cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
+            sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
+        minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_left - r21*cos_q1_before_q1_for_q3_left
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
         # q6: direction and distance of a point
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
-        cos_q5 = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
+        # q5: linear pair in the q6 radius and r32 equations
+        cos_q5 = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left
         # its reference where it is free
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
@@ -131,7 +132,7 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
-        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_down
+        wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
         wrist_y_from_q1_fixed = z - d6*r33 - d1
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
@@ -142,7 +143,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # kept where the rest can be reached
         # what the unknown links must span
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
             sin_q6 = sin_q6_before_q6_of_q3_down
             r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_down
@@ -158,11 +159,11 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 + point_from_q1_left
+                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 - ahead_q1_before_q1_for_q3
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
                     - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
@@ -173,26 +174,26 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -232,7 +233,7 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
             r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - r33_times_radius_q6
-            wrist_x_from_q1 = point_from_q1_left - d5*r21_from_q1_before_q56
+            wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -278,7 +279,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a6_left_down - open_a6 < 179.999999999:
             axis_a6_left_down = nearest_period(axis_a6_left_down, open_a6)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left + 0.0)/DEGREE  # A1: its turn
+        # A1: its turn
+        axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_left - open_a1 < 179.999999999:
             axis_a1_left = nearest_period(axis_a1_left, open_a1)
         if radius_q6 > 1e-11:
@@ -289,7 +291,7 @@ def unrolled(k: Constants) -> Unrolled:
                 r33_times_radius_q6 + (r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up)*cos_q5
             )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
-        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_up
+        wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -297,7 +299,7 @@ def unrolled(k: Constants) -> Unrolled:
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
         )
         # kept where the rest can be reached
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
@@ -309,11 +311,11 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = point_from_q1_left - d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - d5_times_r33_times_radius_q6
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
                     - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
@@ -324,26 +326,26 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -383,7 +385,7 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
-        wrist_x_from_q1 = point_from_q1_left - d5*r21_from_q1_before_q56  # what the unknown links must span
+        wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -487,12 +489,13 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_left_up_up = 3.0
             refusal_left_down_down = 3.0
             refusal_left_down_up = 3.0
-        minus_r21_from_q1 = r11*sin_q1_right - r21*cos_q1_right
-        r22_from_q1 = r22*cos_q1_right - r12*sin_q1_right
+        minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_right - r21*cos_q1_before_q1_for_q3_right
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
         # q6: direction and distance of a point
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
-        cos_q5 = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
+        # q5: linear pair in the q6 radius and r32 equations
+        cos_q5 = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
         # its reference where it is free
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
@@ -508,7 +511,7 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
-        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_down
+        wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
         # a later step needs this of q6: no larger in size than
@@ -518,7 +521,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # kept where the rest can be reached
         # what the unknown links must span
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
             sin_q6 = sin_q6_before_q6_of_q3_down
             r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_down
@@ -534,11 +537,11 @@ def unrolled(k: Constants) -> Unrolled:
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 + point_from_q1_right
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5_times_r33_times_radius_q6
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
                     - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
@@ -549,26 +552,26 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -608,7 +611,7 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
             r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - r33_times_radius_q6
-            wrist_x_from_q1 = point_from_q1_right - d5*r21_from_q1_before_q56
+            wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -648,7 +651,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a6_right_down = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6_right_down - open_a6 < 179.999999999:
             axis_a6_right_down = nearest_period(axis_a6_right_down, open_a6)
-        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right + 0.0)/DEGREE  # A1: its turn
+        # A1: its turn
+        axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_right - open_a1 < 179.999999999:
             axis_a1_right = nearest_period(axis_a1_right, open_a1)
         if radius_q6 > 1e-11:
@@ -659,7 +663,7 @@ def unrolled(k: Constants) -> Unrolled:
                 r33_times_radius_q6 + (r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up)*cos_q5
             )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
-        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_up
+        wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -667,7 +671,7 @@ def unrolled(k: Constants) -> Unrolled:
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
         )
         # kept where the rest can be reached
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
@@ -679,11 +683,11 @@ def unrolled(k: Constants) -> Unrolled:
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = point_from_q1_right - d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - d5_times_r33_times_radius_q6
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
                     - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
@@ -694,26 +698,26 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -753,7 +757,7 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
-        wrist_x_from_q1 = point_from_q1_right - d5*r21_from_q1_before_q56  # what the unknown links must span
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -932,41 +936,41 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # near a fold
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+            return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1)
+            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(None,)
-            ahead_q1 = 0.0
+            ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             d4_times_wrist_y = d4*wrist_y
-            ahead_q1_times_wrist_x = ahead_q1*wrist_x
+            ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
-            cos_q1_left = (-ahead_q1_times_wrist_x - d4_times_wrist_y)/divisor_q1
-            ahead_q1_times_wrist_y = ahead_q1*wrist_y
+            cos_q1_before_q1_for_q3_left = (-ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y)/divisor_q1
+            ahead_q1_before_q1_for_q3_times_wrist_y = ahead_q1_before_q1_for_q3*wrist_y
             d4_times_wrist_x = d4*wrist_x
-            sin_q1_left = (d4_times_wrist_x - ahead_q1_times_wrist_y)/divisor_q1
-            point_from_q1_left = -ahead_q1
-            cos_q1_right = (ahead_q1_times_wrist_x - d4_times_wrist_y)/divisor_q1
-            sin_q1_right = (ahead_q1_times_wrist_y + d4_times_wrist_x)/divisor_q1
-            point_from_q1_right = -point_from_q1_left
+            sin_q1_before_q1_for_q3_left = (d4_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y)/divisor_q1
+            cos_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_x - d4_times_wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3_right = (ahead_q1_before_q1_for_q3_times_wrist_y + d4_times_wrist_x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_left = cos(free_a1)
-            sin_q1_left = sin(free_a1)
-            point_from_q1_left = wrist_x*cos_q1_left + wrist_y*sin_q1_left
-            cos_q1_right = cos_q1_left
-            sin_q1_right = sin_q1_left
-            point_from_q1_right = wrist_x*cos_q1_right + wrist_y*sin_q1_right
-        minus_r21_from_q1 = r11*sin_q1_left - r21*cos_q1_left
-        r22_from_q1 = r22*cos_q1_left - r12*sin_q1_left
+            cos_q1_before_q1_for_q3_left = cos(free_a1)
+            sin_q1_before_q1_for_q3_left = sin(free_a1)
+            cos_q1_before_q1_for_q3_right = cos_q1_before_q1_for_q3_left
+            sin_q1_before_q1_for_q3_right = sin_q1_before_q1_for_q3_left
+        minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_left - r21*cos_q1_before_q1_for_q3_left
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3_left - r12*sin_q1_before_q1_for_q3_left
         # q6: direction and distance of a point
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
-        cos_q5 = r13*sin_q1_left - r23*cos_q1_left  # q5: linear pair in the q6 radius and r32 equations
+        # q5: linear pair in the q6 radius and r32 equations
+        cos_q5 = r13*sin_q1_before_q1_for_q3_left - r23*cos_q1_before_q1_for_q3_left
         # its reference where it is free
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
@@ -982,7 +986,7 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
-        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_down
+        wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
         wrist_y_from_q1_fixed = z - d6*r33 - d1
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
@@ -993,7 +997,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # kept where the rest can be reached
         # what the unknown links must span
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
             sin_q6 = sin_q6_before_q6_of_q3_down
             r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_down
@@ -1009,11 +1013,11 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 + point_from_q1_left
+                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 - ahead_q1_before_q1_for_q3
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
                     - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
@@ -1024,26 +1028,26 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -1083,7 +1087,7 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
             r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - r33_times_radius_q6
-            wrist_x_from_q1 = point_from_q1_left - d5*r21_from_q1_before_q56
+            wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1093,7 +1097,7 @@ def unrolled(k: Constants) -> Unrolled:
         above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
         product_q3 = above_q3*below_q3
         refusal_left_down = 0.0 if product_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
-        axis_a1_left = offset_a1 + arctan2(sin_q1_left, cos_q1_left)*RADIAN
+        axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*RADIAN
         both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (above_q3 - below_q3)/sum_q3
@@ -1122,7 +1126,7 @@ def unrolled(k: Constants) -> Unrolled:
                 r33_times_radius_q6 + (r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up)*cos_q5
             )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
-        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_left - d5*r21_from_q1_before_q56_before_q6_of_q3_up
+        wrist_x_from_q1_before_q6_of_q3 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -1130,7 +1134,7 @@ def unrolled(k: Constants) -> Unrolled:
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
         )
         # kept where the rest can be reached
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
@@ -1142,11 +1146,11 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1_across_times_wrist_y_from_q1_fixed_times_2 = 2.0*wrist_y_from_q1_across*wrist_y_from_q1_fixed
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = point_from_q1_left - d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = -ahead_q1_before_q1_for_q3 - d5_times_r33_times_radius_q6
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
                     - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
@@ -1157,26 +1161,26 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -1216,7 +1220,7 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
-        wrist_x_from_q1 = point_from_q1_left - d5*r21_from_q1_before_q56  # what the unknown links must span
+        wrist_x_from_q1 = -ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1250,12 +1254,13 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4_left_down_down = offset_a4 + (angle_q3_down + angle_with_q4_down - angle_q2_left_down_down)*RADIAN
         # q4: what the sum q234 leaves
         axis_a4_left_down_up = offset_a4 + (angle_q3_up + angle_with_q4_up - angle_q2_left_down_up)*RADIAN
-        minus_r21_from_q1 = r11*sin_q1_right - r21*cos_q1_right
-        r22_from_q1 = r22*cos_q1_right - r12*sin_q1_right
+        minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3_right - r21*cos_q1_before_q1_for_q3_right
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
         # q6: direction and distance of a point
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         r33_times_radius_q6 = r33*radius_q6
-        cos_q5 = r13*sin_q1_right - r23*cos_q1_right  # q5: linear pair in the q6 radius and r32 equations
+        # q5: linear pair in the q6 radius and r32 equations
+        cos_q5 = r13*sin_q1_before_q1_for_q3_right - r23*cos_q1_before_q1_for_q3_right
         # its reference where it is free
         if radius_q6 > 1e-11:
             cos_q6_before_q6_of_q3_down = minus_r21_from_q1/radius_q6
@@ -1271,7 +1276,7 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1_before_q56_before_q6_of_q3_down = (
             (r31*cos_q6_before_q6_of_q3_down - r32*sin_q6_before_q6_of_q3_down)*cos_q5 - r33_times_radius_q6
         )
-        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_down
+        wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_down
         r22_from_q1_before_q6_before_q6_of_q3_down = r32*cos_q6_before_q6_of_q3_down + r31*sin_q6_before_q6_of_q3_down
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_down
         # a later step needs this of q6: no larger in size than
@@ -1281,7 +1286,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # kept where the rest can be reached
         # what the unknown links must span
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_down
             sin_q6 = sin_q6_before_q6_of_q3_down
             r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3_down
@@ -1297,11 +1302,11 @@ def unrolled(k: Constants) -> Unrolled:
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_down
                 sin_q6 = sin_q6_before_q6_of_q3_down
             else:
-                wrist_x_from_q1_fixed = d5_times_r33_times_radius_q6 + point_from_q1_right
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5_times_r33_times_radius_q6
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
                     - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
@@ -1312,26 +1317,26 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_down + along_q6_of_q3*cos_q6_before_q6_of_q3_down - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -1371,7 +1376,7 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
             r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - r33_times_radius_q6
-            wrist_x_from_q1 = point_from_q1_right - d5*r21_from_q1_before_q56
+            wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1381,7 +1386,7 @@ def unrolled(k: Constants) -> Unrolled:
         above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
         product_q3 = above_q3*below_q3
         refusal_right_down = 0.0 if product_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
-        axis_a1_right = offset_a1 + arctan2(sin_q1_right, cos_q1_right)*RADIAN
+        axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*RADIAN
         both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
         cos_q3 = (above_q3 - below_q3)/sum_q3
@@ -1410,7 +1415,7 @@ def unrolled(k: Constants) -> Unrolled:
                 r33_times_radius_q6 + (r31*cos_q6_before_q6_of_q3_up - r32*sin_q6_before_q6_of_q3_up)*cos_q5
             )
             r22_from_q1_before_q6_before_q6_of_q3_up = r32*cos_q6_before_q6_of_q3_up + r31*sin_q6_before_q6_of_q3_up
-        wrist_x_from_q1_before_q6_of_q3 = point_from_q1_right - d5*r21_from_q1_before_q56_before_q6_of_q3_up
+        wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3_up
         wrist_y_from_q1_before_q6_of_q3 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6_before_q6_of_q3_up
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -1418,7 +1423,7 @@ def unrolled(k: Constants) -> Unrolled:
             + wrist_y_from_q1_before_q6_of_q3*wrist_y_from_q1_before_q6_of_q3 - a2_squared_plus_a3_squared
         )
         # kept where the rest can be reached
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3_up
             sin_q6 = sin_q6_before_q6_of_q3_up
         else:
@@ -1430,11 +1435,11 @@ def unrolled(k: Constants) -> Unrolled:
             minus_wrist_x_from_q1_along = d5*r31*cos_q5
             wrist_x_from_q1_across = d5*r32*cos_q5
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3_up
                 sin_q6 = sin_q6_before_q6_of_q3_up
             else:
-                wrist_x_from_q1_fixed = point_from_q1_right - d5_times_r33_times_radius_q6
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 - d5_times_r33_times_radius_q6
                 along_q6_of_q3 = (
                     wrist_y_from_q1_along_times_wrist_y_from_q1_fixed_times_2
                     - 2.0*minus_wrist_x_from_q1_along*wrist_x_from_q1_fixed
@@ -1445,26 +1450,26 @@ def unrolled(k: Constants) -> Unrolled:
                 )
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3_up + along_q6_of_q3*cos_q6_before_q6_of_q3_up - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -1504,7 +1509,7 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
         r21_from_q1_before_q56 = r33_times_radius_q6 + (r31*cos_q6 - r32*sin_q6)*cos_q5
-        wrist_x_from_q1 = point_from_q1_right - d5*r21_from_q1_before_q56  # what the unknown links must span
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56  # what the unknown links must span
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_y_from_q1_fixed + d5*r22_from_q1_before_q6  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1617,28 +1622,30 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d4)*(d4 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # near a fold
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+            return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
-            ahead_q1 = -sqrt(ahead_squared_q1)*sigma_shoulder
+            ahead_q1_before_q1_for_q3 = -sqrt(ahead_squared_q1)*sigma_shoulder
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return None
-            ahead_q1 = 0.0
+            ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             divisor_q1 = distance_q1*distance_q1
-            cos_q1 = (ahead_q1*wrist_x - d4*wrist_y)/divisor_q1
-            sin_q1 = (ahead_q1*wrist_y + d4*wrist_x)/divisor_q1
-            point_from_q1 = ahead_q1
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d4*wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d4*wrist_x)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)
-            sin_q1 = sin(free_a1)
-            point_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1
-        cos_q5 = r13*sin_q1 - r23*cos_q1  # q5: linear pair in the q6 radius and r32 equations
-        minus_r21_from_q1 = r11*sin_q1 - r21*cos_q1
-        r22_from_q1 = r22*cos_q1 - r12*sin_q1
+            cos_q1_before_q1_for_q3 = cos(free_a1)
+            sin_q1_before_q1_for_q3 = sin(free_a1)
+        # q5: linear pair in the q6 radius and r32 equations
+        cos_q5 = r13*sin_q1_before_q1_for_q3 - r23*cos_q1_before_q1_for_q3
+        minus_r21_from_q1 = r11*sin_q1_before_q1_for_q3 - r21*cos_q1_before_q1_for_q3
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3
         # q6: direction and distance of a point
         radius_q6 = sqrt(minus_r21_from_q1*minus_r21_from_q1 + r22_from_q1*r22_from_q1)
         q6_radius_of_q5 = radius_q6*sigma_wrist
@@ -1654,9 +1661,9 @@ def unrolled(k: Constants) -> Unrolled:
         r21_from_q1_before_q56_before_q6_of_q3 = (
             (r31*cos_q6_before_q6_of_q3 - r32*sin_q6_before_q6_of_q3)*cos_q5 - q6_radius_of_q5*r33
         )
-        wrist_x_from_q1_before_q6_of_q3 = point_from_q1 - d5*r21_from_q1_before_q56_before_q6_of_q3
-        r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
+        wrist_x_from_q1_before_q6_of_q3 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56_before_q6_of_q3
         wrist_z = z - d6*r33
+        r22_from_q1_before_q6_before_q6_of_q3 = r32*cos_q6_before_q6_of_q3 + r31*sin_q6_before_q6_of_q3
         wrist_y_from_q1_before_q6_of_q3 = wrist_z + d5*r22_from_q1_before_q6_before_q6_of_q3 - d1
         # a later step needs this of q6: no larger in size than
         value_q6_of_q3 = (
@@ -1665,7 +1672,7 @@ def unrolled(k: Constants) -> Unrolled:
         )
         # kept where the rest can be reached
         # what the unknown links must span
-        if abs(value_q6_of_q3) <= size_q6_of_q3:
+        if abs(value_q6_of_q3) <= size_q1_for_q3:
             cos_q6 = cos_q6_before_q6_of_q3
             sin_q6 = sin_q6_before_q6_of_q3
             r21_from_q1_before_q56 = r21_from_q1_before_q56_before_q6_of_q3
@@ -1674,36 +1681,36 @@ def unrolled(k: Constants) -> Unrolled:
             wrist_y_from_q1 = wrist_y_from_q1_before_q6_of_q3
         else:
             # kept where the rest can be reached
-            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q6_of_q3:
+            if radius_q6 > 0.1 and abs(value_q6_of_q3) > share_of_size_q1_for_q3:
                 cos_q6 = cos_q6_before_q6_of_q3
                 sin_q6 = sin_q6_before_q6_of_q3
             else:
-                wrist_x_from_q1_fixed = point_from_q1 + d5*q6_radius_of_q5*r33
+                wrist_x_from_q1_fixed = ahead_q1_before_q1_for_q3 + d5*q6_radius_of_q5*r33
                 wrist_y_from_q1_fixed = wrist_z - d1
                 along_q6_of_q3 = 2.0*(d5*r32)*wrist_y_from_q1_fixed - 2.0*(d5*r31*cos_q5)*wrist_x_from_q1_fixed
                 across_q6_of_q3 = 2.0*(d5*r32*cos_q5)*wrist_x_from_q1_fixed + 2.0*(d5*r31)*wrist_y_from_q1_fixed
                 swing_q6_of_q3 = sqrt(across_q6_of_q3*across_q6_of_q3 + along_q6_of_q3*along_q6_of_q3)
                 # the arc: cosines from its centre
-                if swing_q6_of_q3 > size_q6_of_q3_times_rounding:
+                if swing_q6_of_q3 > size_q1_for_q3_times_rounding:
                     minus_level_q6_of_q3 = (
                         across_q6_of_q3*sin_q6_before_q6_of_q3 + along_q6_of_q3*cos_q6_before_q6_of_q3 - value_q6_of_q3
                     )
                     highest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 + size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 + size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                     lowest_q6_of_q3 = (
                         1.0
-                        if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 > 1.0
+                        if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 > 1.0
                         else (
                             -1.0
-                            if (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3 < -1.0
-                            else (minus_level_q6_of_q3 - size_q6_of_q3)/swing_q6_of_q3
+                            if (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3 < -1.0
+                            else (minus_level_q6_of_q3 - size_q1_for_q3)/swing_q6_of_q3
                         )
                     )
                 else:
@@ -1739,7 +1746,7 @@ def unrolled(k: Constants) -> Unrolled:
                     cos_q6 = cos_q6_after_q6_of_q3
                     sin_q6 = sin_q6_after_q6_of_q3
             r21_from_q1_before_q56 = (r31*cos_q6 - r32*sin_q6)*cos_q5 - q6_radius_of_q5*r33
-            wrist_x_from_q1 = point_from_q1 - d5*r21_from_q1_before_q56
+            wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - d5*r21_from_q1_before_q56
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
@@ -1762,12 +1769,13 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a4 = offset_a4 + (arctan2(r21_from_q1_before_q56, r22_from_q1_before_q6) - angle_q2 - angle_q3)*RADIAN
         if no_offsets:
             return (
-                arctan2(sin_q1, cos_q1)*RADIAN, angle_q2*RADIAN, angle_q3*RADIAN, axis_a4,
-                arctan2(q6_radius_of_q5, cos_q5)*RADIAN, arctan2(sin_q6, cos_q6)*RADIAN,
+                arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, angle_q2*RADIAN, angle_q3*RADIAN,
+                axis_a4, arctan2(q6_radius_of_q5, cos_q5)*RADIAN, arctan2(sin_q6, cos_q6)*RADIAN,
             )
         return (
-            offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN, offset_a2 + angle_q2*RADIAN, offset_a3 + angle_q3*RADIAN,
-            axis_a4, offset_a5 + arctan2(q6_radius_of_q5, cos_q5)*RADIAN, offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN,
+            offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, offset_a2 + angle_q2*RADIAN,
+            offset_a3 + angle_q3*RADIAN, axis_a4, offset_a5 + arctan2(q6_radius_of_q5, cos_q5)*RADIAN,
+            offset_a6 + arctan2(sin_q6, cos_q6)*RADIAN,
         )
 
     return Unrolled(every_branch, branches, branch)

@@ -56,6 +56,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a5 = k.single_a5
     single_a6 = k.single_a6
     swing_scale_q3 = k.swing_scale_q3
+    machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     angle_of_a3_by_effective_q3 = arctan2(d4/effective_q3 + 0.0, a3/effective_q3 + 0.0)
     offset_a6_plus_180 = 180.0 + offset_a6
@@ -81,38 +82,37 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # near a fold
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+            return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1)
+            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(3.0,)
-            ahead_q1 = 0.0
+            ahead_q1_before_q1_for_q3 = 0.0
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             d3_times_wrist_y = d3*wrist_y
-            ahead_q1_times_wrist_x = ahead_q1*wrist_x
+            ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
             divisor_q1 = distance_q1*distance_q1
-            cos_q1_front = (ahead_q1_times_wrist_x - d3_times_wrist_y)/divisor_q1
+            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y)/divisor_q1
             d3_times_wrist_x = d3*wrist_x
-            ahead_q1_times_wrist_y = ahead_q1*wrist_y
-            sin_q1_front = (ahead_q1_times_wrist_y + d3_times_wrist_x)/divisor_q1
-            point_from_q1_front = ahead_q1
-            cos_q1_back = (-ahead_q1_times_wrist_x - d3_times_wrist_y)/divisor_q1
-            sin_q1_back = (d3_times_wrist_x - ahead_q1_times_wrist_y)/divisor_q1
-            point_from_q1_back = -ahead_q1
+            ahead_q1_before_q1_for_q3_times_wrist_y = ahead_q1_before_q1_for_q3*wrist_y
+            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_wrist_y + d3_times_wrist_x)/divisor_q1
+            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y)/divisor_q1
         else:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_front = cos(free_a1)
-            sin_q1_front = sin(free_a1)
-            point_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front
-            cos_q1_back = cos_q1_front
-            sin_q1_back = sin_q1_front
-            point_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back
-        r13_from_q1 = r13*cos_q1_front + r23*sin_q1_front
-        wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
+            cos_q1_before_q1_for_q3_front = cos(free_a1)
+            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
+            sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
+        r13_from_q1 = r13*cos_q1_before_q1_for_q3_front + r23*sin_q1_before_q1_for_q3_front
         wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
@@ -139,7 +139,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
-        r23_from_q1 = r23*cos_q1_front - r13*sin_q1_front
+        r23_from_q1 = r23*cos_q1_before_q1_for_q3_front - r13*sin_q1_before_q1_for_q3_front
         # q4: direction and distance of a point
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
@@ -162,12 +162,12 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_front_down_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_front_down_down - open_a5 < 179.999999999:
             axis_a5_front_down_down = nearest_period(axis_a5_front_down_down, open_a5)
-        r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
-        r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
+        r21_from_q1 = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front
+        r11_from_q1 = r11*cos_q1_before_q1_for_q3_front + r21*sin_q1_before_q1_for_q3_front
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
         minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
-        r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
-        r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front
+        r12_from_q1 = r12*cos_q1_before_q1_for_q3_front + r22*sin_q1_before_q1_for_q3_front
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
@@ -186,7 +186,8 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front + 0.0)/DEGREE  # A1: its turn
+        # A1: its turn
+        axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
             axis_a1_front = nearest_period(axis_a1_front, open_a1)
         if radius_q4 > 1e-11:
@@ -316,8 +317,8 @@ def unrolled(k: Constants) -> Unrolled:
             refusal_front_down_up = 3.0
             refusal_front_up_down = 3.0
             refusal_front_up_up = 3.0
-        r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
-        wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
+        r13_from_q1 = r13*cos_q1_before_q1_for_q3_back + r23*sin_q1_before_q1_for_q3_back
+        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
@@ -344,7 +345,7 @@ def unrolled(k: Constants) -> Unrolled:
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
-        r23_from_q1 = r23*cos_q1_back - r13*sin_q1_back
+        r23_from_q1 = r23*cos_q1_before_q1_for_q3_back - r13*sin_q1_before_q1_for_q3_back
         # q4: direction and distance of a point
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
@@ -365,12 +366,12 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a5_back_down_down = offset_a5 + arctan2(radius_q4, cos_q5 + 0.0)/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5_back_down_down - open_a5 < 179.999999999:
             axis_a5_back_down_down = nearest_period(axis_a5_back_down_down, open_a5)
-        r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
-        r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
+        r21_from_q1 = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back
+        r11_from_q1 = r11*cos_q1_before_q1_for_q3_back + r21*sin_q1_before_q1_for_q3_back
         r11_from_q123 = r31*cos_q23 - r11_from_q1*sin_q23
         minus_scaled_r21_from_q1234 = direction_x_q4_down*r21_from_q1 + direction_y_q4_down*r11_from_q123
-        r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
-        r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
+        r22_from_q1 = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back
+        r12_from_q1 = r12*cos_q1_before_q1_for_q3_back + r22*sin_q1_before_q1_for_q3_back
         r12_from_q123 = r32*cos_q23 - r12_from_q1*sin_q23
         minus_scaled_r22_from_q1234 = direction_x_q4_down*r22_from_q1 + direction_y_q4_down*r12_from_q123
         # A6: its turn
@@ -385,7 +386,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
             axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back + 0.0)/DEGREE  # A1: its turn
+        # A1: its turn
+        axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_back - open_a1 < 179.999999999:
             axis_a1_back = nearest_period(axis_a1_back, open_a1)
         if radius_q4 > 1e-11:
@@ -590,37 +592,19 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # near a fold
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+            return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1)
+            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 8*(None,)
-            ahead_q1 = 0.0
-        # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
-            d3_times_wrist_y = d3*wrist_y
-            ahead_q1_times_wrist_x = ahead_q1*wrist_x
-            divisor_q1 = distance_q1*distance_q1
-            cos_q1_front = (ahead_q1_times_wrist_x - d3_times_wrist_y)/divisor_q1
-            d3_times_wrist_x = d3*wrist_x
-            ahead_q1_times_wrist_y = ahead_q1*wrist_y
-            sin_q1_front = (ahead_q1_times_wrist_y + d3_times_wrist_x)/divisor_q1
-            point_from_q1_front = ahead_q1
-            cos_q1_back = (-ahead_q1_times_wrist_x - d3_times_wrist_y)/divisor_q1
-            sin_q1_back = (d3_times_wrist_x - ahead_q1_times_wrist_y)/divisor_q1
-            point_from_q1_back = -ahead_q1
-        else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_front = cos(free_a1)
-            sin_q1_front = sin(free_a1)
-            point_from_q1_front = wrist_x*cos_q1_front + wrist_y*sin_q1_front
-            cos_q1_back = cos_q1_front
-            sin_q1_back = sin_q1_front
-            point_from_q1_back = wrist_x*cos_q1_back + wrist_y*sin_q1_back
-        wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
+            ahead_q1_before_q1_for_q3 = 0.0
         wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
@@ -629,7 +613,24 @@ def unrolled(k: Constants) -> Unrolled:
         above_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)  # zero where it is the other
         product_q3 = above_q3*below_q3
         refusal_front = 0.0 if product_q3 >= -swing_scale_q3_squared_times_rounding else 3.0  # q3: out of reach
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN
+        # its reference where it is free
+        if distance_q1 > machine_scale_times_free_angle:
+            d3_times_wrist_y = d3*wrist_y
+            ahead_q1_before_q1_for_q3_times_wrist_x = ahead_q1_before_q1_for_q3*wrist_x
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y)/divisor_q1
+            d3_times_wrist_x = d3*wrist_x
+            ahead_q1_before_q1_for_q3_times_wrist_y = ahead_q1_before_q1_for_q3*wrist_y
+            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_wrist_y + d3_times_wrist_x)/divisor_q1
+            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_wrist_x - d3_times_wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_wrist_x - ahead_q1_before_q1_for_q3_times_wrist_y)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3_front = cos(free_a1)
+            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
+            sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
+        axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*RADIAN
         both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
@@ -647,16 +648,16 @@ def unrolled(k: Constants) -> Unrolled:
         angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
         angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
         axis_a3_front_down = offset_a3 + angle_q3*RADIAN
-        r13_from_q1 = r13*cos_q1_front + r23*sin_q1_front
+        r13_from_q1 = r13*cos_q1_before_q1_for_q3_front + r23*sin_q1_before_q1_for_q3_front
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
-        r23_from_q1 = r23*cos_q1_front - r13*sin_q1_front
+        r23_from_q1 = r23*cos_q1_before_q1_for_q3_front - r13*sin_q1_before_q1_for_q3_front
         # q4: direction and distance of a point
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        r12_from_q1 = r12*cos_q1_front + r22*sin_q1_front
-        r11_from_q1 = r11*cos_q1_front + r21*sin_q1_front
+        r12_from_q1 = r12*cos_q1_before_q1_for_q3_front + r22*sin_q1_before_q1_for_q3_front
+        r11_from_q1 = r11*cos_q1_before_q1_for_q3_front + r21*sin_q1_before_q1_for_q3_front
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
@@ -665,8 +666,8 @@ def unrolled(k: Constants) -> Unrolled:
             minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
-            r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
+            r21_from_q1 = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front
+            r22_from_q1 = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
@@ -719,8 +720,8 @@ def unrolled(k: Constants) -> Unrolled:
             minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            r21_from_q1 = r21*cos_q1_front - r11*sin_q1_front
-            r22_from_q1 = r22*cos_q1_front - r12*sin_q1_front
+            r21_from_q1 = r21*cos_q1_before_q1_for_q3_front - r11*sin_q1_before_q1_for_q3_front
+            r22_from_q1 = r22*cos_q1_before_q1_for_q3_front - r12*sin_q1_before_q1_for_q3_front
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
@@ -756,7 +757,7 @@ def unrolled(k: Constants) -> Unrolled:
             direction_of_axis_a6_front_up_up = (
                 offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234_up, minus_scaled_r22_from_q1234_up)*RADIAN
             )
-        wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
+        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
@@ -765,7 +766,7 @@ def unrolled(k: Constants) -> Unrolled:
         above_q3 = (effective_q3 - a2_minus_reach)*(a2_plus_reach - effective_q3)  # zero where it is the other
         product_q3 = above_q3*below_q3
         refusal_back = 0.0 if product_q3 >= -swing_scale_q3_squared_times_rounding else 3.0  # q3: out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN
+        axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
         both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
@@ -783,16 +784,16 @@ def unrolled(k: Constants) -> Unrolled:
         angle_of_swing_q3 = arctan2(-sin_swing_q3, cos_swing_q3)
         angle_q3 = angle_of_a3_by_effective_q3 + angle_of_swing_q3
         axis_a3_back_down = offset_a3 + angle_q3*RADIAN
-        r13_from_q1 = r13*cos_q1_back + r23*sin_q1_back
+        r13_from_q1 = r13*cos_q1_before_q1_for_q3_back + r23*sin_q1_before_q1_for_q3_back
         angle_q23 = angle_q2_down + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
-        r23_from_q1 = r23*cos_q1_back - r13*sin_q1_back
+        r23_from_q1 = r23*cos_q1_before_q1_for_q3_back - r13*sin_q1_before_q1_for_q3_back
         # q4: direction and distance of a point
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
-        r12_from_q1 = r12*cos_q1_back + r22*sin_q1_back
-        r11_from_q1 = r11*cos_q1_back + r21*sin_q1_back
+        r12_from_q1 = r12*cos_q1_before_q1_for_q3_back + r22*sin_q1_before_q1_for_q3_back
+        r11_from_q1 = r11*cos_q1_before_q1_for_q3_back + r21*sin_q1_before_q1_for_q3_back
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
             direction_x_q4_down = minus_r13_from_q123
@@ -801,8 +802,8 @@ def unrolled(k: Constants) -> Unrolled:
             minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
-            r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
+            r21_from_q1 = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back
+            r22_from_q1 = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
@@ -855,8 +856,8 @@ def unrolled(k: Constants) -> Unrolled:
             minus_scaled_r22_from_q1234_down = -(r11_from_q1*cos_q23) - r31*sin_q23
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            r21_from_q1 = r21*cos_q1_back - r11*sin_q1_back
-            r22_from_q1 = r22*cos_q1_back - r12*sin_q1_back
+            r21_from_q1 = r21*cos_q1_before_q1_for_q3_back - r11*sin_q1_before_q1_for_q3_back
+            r22_from_q1 = r22*cos_q1_before_q1_for_q3_back - r12*sin_q1_before_q1_for_q3_back
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
                 direction_x_q4_down = minus_r13_from_q123
@@ -968,27 +969,19 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y = y - d6*r23
         distance_q1 = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # near a fold
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+            return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1)*sigma_arm
+            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)*sigma_arm
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return None
-            ahead_q1 = 0.0
-        # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
-            divisor_q1 = distance_q1*distance_q1
-            cos_q1 = (ahead_q1*wrist_x - d3*wrist_y)/divisor_q1
-            sin_q1 = (ahead_q1*wrist_y + d3*wrist_x)/divisor_q1
-            point_from_q1 = ahead_q1
-        else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)
-            sin_q1 = sin(free_a1)
-            point_from_q1 = wrist_x*cos_q1 + wrist_y*sin_q1
-        wrist_x_from_q1 = point_from_q1 - a1  # what the unknown links must span
+            ahead_q1_before_q1_for_q3 = 0.0
         wrist_y_from_q1 = z - d6*r33 - d1  # what the unknown links must span
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # zero where it is stretched or folded
         below_q3 = (a2_plus_effective_q3 + reach)*(a2_plus_effective_q3 - reach)
@@ -997,6 +990,15 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (product_q3 >= -swing_scale_q3_squared_times_rounding):
             return None
+        # its reference where it is free
+        if distance_q1 > machine_scale_times_free_angle:
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_x - d3*wrist_y)/divisor_q1
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*wrist_y + d3*wrist_x)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3 = cos(free_a1)
+            sin_q1_before_q1_for_q3 = sin(free_a1)
         both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = -2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
@@ -1009,20 +1011,24 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             angle_q2 = (ref_a2 - offset_a2)*DEGREE
         angle_q3 = angle_of_a3_by_effective_q3 + arctan2(sin_swing_q3, cos_swing_q3)
-        r13_from_q1 = r13*cos_q1 + r23*sin_q1
+        r13_from_q1 = r13*cos_q1_before_q1_for_q3 + r23*sin_q1_before_q1_for_q3
         angle_q23 = angle_q2 + angle_q3
         sin_q23 = sin(angle_q23)
         cos_q23 = cos(angle_q23)
         minus_r13_from_q123 = r13_from_q1*sin_q23 - r33*cos_q23
-        r23_from_q1 = r23*cos_q1 - r13*sin_q1
+        r23_from_q1 = r23*cos_q1_before_q1_for_q3 - r13*sin_q1_before_q1_for_q3
         # q4: direction and distance of a point
         radius_q4 = sqrt(minus_r13_from_q123*minus_r13_from_q123 + r23_from_q1*r23_from_q1)
         # q4: polar angle in the r13 and r23 equations; its reference where it is free
         if radius_q4 > 0.1:
             direction_x_q4 = minus_r13_from_q123*sigma_hand
             direction_y_q4 = r23_from_q1*sigma_hand
-            minus_scaled_r21_from_q1234 = sigma_hand*((r12*cos_q1 + r22*sin_q1)*cos_q23 + r32*sin_q23)
-            minus_scaled_r22_from_q1234 = -sigma_hand*((r11*cos_q1 + r21*sin_q1)*cos_q23 + r31*sin_q23)
+            minus_scaled_r21_from_q1234 = (
+                sigma_hand*((r12*cos_q1_before_q1_for_q3 + r22*sin_q1_before_q1_for_q3)*cos_q23 + r32*sin_q23)
+            )
+            minus_scaled_r22_from_q1234 = (
+                -sigma_hand*((r11*cos_q1_before_q1_for_q3 + r21*sin_q1_before_q1_for_q3)*cos_q23 + r31*sin_q23)
+            )
         else:
             # q4: polar angle in the r13 and r23 equations; its reference where it is free
             if radius_q4 > 1e-11:
@@ -1032,20 +1038,24 @@ def unrolled(k: Constants) -> Unrolled:
                 free_a4 = (ref_a4 - offset_a4)*DEGREE
                 direction_x_q4 = cos(free_a4)
                 direction_y_q4 = sin(free_a4)
-            r11_from_q123 = r31*cos_q23 - (r11*cos_q1 + r21*sin_q1)*sin_q23
-            minus_scaled_r21_from_q1234 = (r21*cos_q1 - r11*sin_q1)*direction_x_q4 + direction_y_q4*r11_from_q123
-            r12_from_q123 = r32*cos_q23 - (r12*cos_q1 + r22*sin_q1)*sin_q23
-            minus_scaled_r22_from_q1234 = (r22*cos_q1 - r12*sin_q1)*direction_x_q4 + direction_y_q4*r12_from_q123
+            r11_from_q123 = r31*cos_q23 - (r11*cos_q1_before_q1_for_q3 + r21*sin_q1_before_q1_for_q3)*sin_q23
+            minus_scaled_r21_from_q1234 = (
+                (r21*cos_q1_before_q1_for_q3 - r11*sin_q1_before_q1_for_q3)*direction_x_q4 + direction_y_q4*r11_from_q123
+            )
+            r12_from_q123 = r32*cos_q23 - (r12*cos_q1_before_q1_for_q3 + r22*sin_q1_before_q1_for_q3)*sin_q23
+            minus_scaled_r22_from_q1234 = (
+                (r22*cos_q1_before_q1_for_q3 - r12*sin_q1_before_q1_for_q3)*direction_x_q4 + direction_y_q4*r12_from_q123
+            )
         cos_q5 = r13_from_q1*cos_q23 + r33*sin_q23  # q5: linear pair in the q4 radius and r23 equations
         if no_offsets:
             return (
-                arctan2(sin_q1, cos_q1)*RADIAN, angle_q2*RADIAN, angle_q3*RADIAN,
+                arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, angle_q2*RADIAN, angle_q3*RADIAN,
                 arctan2(direction_y_q4, direction_x_q4)*RADIAN, arctan2(radius_q4*sigma_hand, cos_q5)*RADIAN,
                 180.0 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN,
             )
         return (
-            offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN, offset_a2 + angle_q2*RADIAN, offset_a3 + angle_q3*RADIAN,
-            offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN,
+            offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, offset_a2 + angle_q2*RADIAN,
+            offset_a3 + angle_q3*RADIAN, offset_a4 + arctan2(direction_y_q4, direction_x_q4)*RADIAN,
             offset_a5 + arctan2(radius_q4*sigma_hand, cos_q5)*RADIAN,
             offset_a6_plus_180 + arctan2(minus_scaled_r21_from_q1234, minus_scaled_r22_from_q1234)*RADIAN,
         )

@@ -40,6 +40,7 @@ def unrolled(k: Constants) -> Unrolled:
     single_a2 = k.single_a2
     single_a3 = k.single_a3
     swing_scale_q3_2 = k.swing_scale_q3_2
+    machine_scale_squared_times_plane = 1e-6*machine_scale*machine_scale
     machine_scale_times_free_angle = 1e-11*machine_scale
     angle_of_a3_by_effective_q3_2 = arctan2(d4/effective_q3_2 + 0.0, a3/effective_q3_2 + 0.0)
     swing_scale_q3_2_squared_times_rounding = 1e-12*swing_scale_q3_2*swing_scale_q3_2
@@ -59,37 +60,19 @@ def unrolled(k: Constants) -> Unrolled:
             return 4*(2.0,)
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # near a fold
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+            return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1)
+            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 4*(3.0,)
-            ahead_q1 = 0.0
-        # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
-            d3_times_y = d3*y
-            ahead_q1_times_x = ahead_q1*x
-            divisor_q1 = distance_q1*distance_q1
-            cos_q1_front = (ahead_q1_times_x - d3_times_y)/divisor_q1
-            d3_times_x = d3*x
-            ahead_q1_times_y = ahead_q1*y
-            sin_q1_front = (ahead_q1_times_y + d3_times_x)/divisor_q1
-            point_from_q1_front = ahead_q1
-            cos_q1_back = (-ahead_q1_times_x - d3_times_y)/divisor_q1
-            sin_q1_back = (d3_times_x - ahead_q1_times_y)/divisor_q1
-            point_from_q1_back = -ahead_q1
-        else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_front = cos(free_a1)
-            sin_q1_front = sin(free_a1)
-            point_from_q1_front = x*cos_q1_front + y*sin_q1_front
-            cos_q1_back = cos_q1_front
-            sin_q1_back = sin_q1_front
-            point_from_q1_back = x*cos_q1_back + y*sin_q1_back
-        wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
+            ahead_q1_before_q1_for_q3 = 0.0
         wrist_y_from_q1 = z - d1  # what the unknown links must span
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
@@ -120,8 +103,26 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_front_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_front_down - open_a3 < 179.999999999:
             axis_a3_front_down = nearest_period(axis_a3_front_down, open_a3)
+        # its reference where it is free
+        if distance_q1 > machine_scale_times_free_angle:
+            d3_times_y = d3*y
+            ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3*x
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_x - d3_times_y)/divisor_q1
+            d3_times_x = d3*x
+            ahead_q1_before_q1_for_q3_times_y = ahead_q1_before_q1_for_q3*y
+            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_y + d3_times_x)/divisor_q1
+            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_x - d3_times_y)/divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_times_y)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3_front = cos(free_a1)
+            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
+            sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front + 0.0)/DEGREE  # A1: its turn
+        # A1: its turn
+        axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_front - open_a1 < 179.999999999:
             axis_a1_front = nearest_period(axis_a1_front, open_a1)
         axis_a2_front_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
@@ -150,7 +151,7 @@ def unrolled(k: Constants) -> Unrolled:
         else:
             refusal_front_down = 3.0
             refusal_front_up = 3.0
-        wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
+        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
@@ -179,7 +180,8 @@ def unrolled(k: Constants) -> Unrolled:
         axis_a3_back_down = offset_a3 + angle_q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_back_down - open_a3 < 179.999999999:
             axis_a3_back_down = nearest_period(axis_a3_back_down, open_a3)
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back + 0.0)/DEGREE  # A1: its turn
+        # A1: its turn
+        axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back + 0.0)/DEGREE
         if not -180.000000001 <= axis_a1_back - open_a1 < 179.999999999:
             axis_a1_back = nearest_period(axis_a1_back, open_a1)
         axis_a2_back_up = offset_a2 + angle_q2_up/DEGREE  # A2: its turn
@@ -225,37 +227,19 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # near a fold
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+            return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1)
+            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return 4*(None,)
-            ahead_q1 = 0.0
-        # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
-            d3_times_y = d3*y
-            ahead_q1_times_x = ahead_q1*x
-            divisor_q1 = distance_q1*distance_q1
-            cos_q1_front = (ahead_q1_times_x - d3_times_y)/divisor_q1
-            d3_times_x = d3*x
-            ahead_q1_times_y = ahead_q1*y
-            sin_q1_front = (ahead_q1_times_y + d3_times_x)/divisor_q1
-            point_from_q1_front = ahead_q1
-            cos_q1_back = (-ahead_q1_times_x - d3_times_y)/divisor_q1
-            sin_q1_back = (d3_times_x - ahead_q1_times_y)/divisor_q1
-            point_from_q1_back = -ahead_q1
-        else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1_front = cos(free_a1)
-            sin_q1_front = sin(free_a1)
-            point_from_q1_front = x*cos_q1_front + y*sin_q1_front
-            cos_q1_back = cos_q1_front
-            sin_q1_back = sin_q1_front
-            point_from_q1_back = x*cos_q1_back + y*sin_q1_back
-        wrist_x_from_q1 = point_from_q1_front - a1  # what the unknown links must span
+            ahead_q1_before_q1_for_q3 = 0.0
         wrist_y_from_q1 = z - d1  # what the unknown links must span
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
@@ -264,7 +248,24 @@ def unrolled(k: Constants) -> Unrolled:
         above_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)  # zero where it is the other
         product_q3 = above_q3*below_q3
         refusal_front = 0.0 if product_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
-        axis_a1_front = offset_a1 + arctan2(sin_q1_front, cos_q1_front)*RADIAN
+        # its reference where it is free
+        if distance_q1 > machine_scale_times_free_angle:
+            d3_times_y = d3*y
+            ahead_q1_before_q1_for_q3_times_x = ahead_q1_before_q1_for_q3*x
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_x - d3_times_y)/divisor_q1
+            d3_times_x = d3*x
+            ahead_q1_before_q1_for_q3_times_y = ahead_q1_before_q1_for_q3*y
+            sin_q1_before_q1_for_q3_front = (ahead_q1_before_q1_for_q3_times_y + d3_times_x)/divisor_q1
+            cos_q1_before_q1_for_q3_back = (-ahead_q1_before_q1_for_q3_times_x - d3_times_y)/divisor_q1
+            sin_q1_before_q1_for_q3_back = (d3_times_x - ahead_q1_before_q1_for_q3_times_y)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3_front = cos(free_a1)
+            sin_q1_before_q1_for_q3_front = sin(free_a1)
+            cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
+            sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
+        axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*RADIAN
         both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
@@ -279,7 +280,7 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2_front_down = free_a2
             angle_q2_front_up = free_a2
         angle_of_swing_q3_front_down = arctan2(-sin_swing_q3, cos_swing_q3)
-        wrist_x_from_q1 = point_from_q1_back - a1  # what the unknown links must span
+        wrist_x_from_q1 = -a1 - ahead_q1_before_q1_for_q3  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
@@ -288,7 +289,7 @@ def unrolled(k: Constants) -> Unrolled:
         above_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)  # zero where it is the other
         product_q3 = above_q3*below_q3
         refusal_back = 0.0 if product_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
-        axis_a1_back = offset_a1 + arctan2(sin_q1_back, cos_q1_back)*RADIAN
+        axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
         both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
@@ -345,27 +346,19 @@ def unrolled(k: Constants) -> Unrolled:
         ref_a1, ref_a2, _ = 3*(0.0,) if reference is None else reference
         distance_q1 = sqrt(x*x + y*y)  # q1: of the point from its axis
         ahead_squared_q1 = (distance_q1 - d3)*(d3 + distance_q1)  # q1: aimed by the z_from_q1 equation
+        # near a fold
+        if not (ahead_squared_q1 > machine_scale_squared_times_plane):
+            return ()
         # how far ahead of the axis the point is; negative: behind
         if ahead_squared_q1 > 0.0:
-            ahead_q1 = sqrt(ahead_squared_q1)*sigma_arm
+            ahead_q1_before_q1_for_q3 = sqrt(ahead_squared_q1)*sigma_arm
         else:
             # q1: out of reach
             if not (ahead_squared_q1 >= -rounding_q1 - 1e-12*distance_q1*distance_q1):
                 return None
-            ahead_q1 = 0.0
-        # its reference where it is free
-        if distance_q1 > machine_scale_times_free_angle:
-            divisor_q1 = distance_q1*distance_q1
-            cos_q1 = (ahead_q1*x - d3*y)/divisor_q1
-            sin_q1 = (ahead_q1*y + d3*x)/divisor_q1
-            point_from_q1 = ahead_q1
-        else:
-            free_a1 = (ref_a1 - offset_a1)*DEGREE
-            cos_q1 = cos(free_a1)
-            sin_q1 = sin(free_a1)
-            point_from_q1 = x*cos_q1 + y*sin_q1
-        wrist_x_from_q1 = point_from_q1 - a1  # what the unknown links must span
+            ahead_q1_before_q1_for_q3 = 0.0
         wrist_y_from_q1 = z - d1  # what the unknown links must span
+        wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         # zero where it is stretched or folded
         below_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
@@ -374,6 +367,15 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (product_q3 >= -swing_scale_q3_2_squared_times_rounding):
             return None
+        # its reference where it is free
+        if distance_q1 > machine_scale_times_free_angle:
+            divisor_q1 = distance_q1*distance_q1
+            cos_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*x - d3*y)/divisor_q1
+            sin_q1_before_q1_for_q3 = (ahead_q1_before_q1_for_q3*y + d3*x)/divisor_q1
+        else:
+            free_a1 = (ref_a1 - offset_a1)*DEGREE
+            cos_q1_before_q1_for_q3 = cos(free_a1)
+            sin_q1_before_q1_for_q3 = sin(free_a1)
         both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
         sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
         sin_swing_q3 = -2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
@@ -387,11 +389,11 @@ def unrolled(k: Constants) -> Unrolled:
             angle_q2 = (ref_a2 - offset_a2)*DEGREE
         if no_offsets:
             return (
-                arctan2(sin_q1, cos_q1)*RADIAN, angle_q2*RADIAN,
+                arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, angle_q2*RADIAN,
                 (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3))*RADIAN,
             )
         return (
-            offset_a1 + arctan2(sin_q1, cos_q1)*RADIAN, offset_a2 + angle_q2*RADIAN,
+            offset_a1 + arctan2(sin_q1_before_q1_for_q3, cos_q1_before_q1_for_q3)*RADIAN, offset_a2 + angle_q2*RADIAN,
             offset_a3 + (angle_of_a3_by_effective_q3_2 + arctan2(sin_swing_q3, cos_swing_q3))*RADIAN,
         )
 
