@@ -157,8 +157,8 @@ def _is_square(value: sp.Expr) -> bool:
 def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _Amplitude) -> Binding:
     sigma = real(f"sigma_{angle.name}")
     turned = (amplitude.cos_unit, amplitude.sin_unit) != (1, 0)
-    words = ("swing_scale" if turned else "scale", "below", "above", "product", "both", "sum")
-    scale, below, above, product, both, total = (real(f"{word}_{angle.name}") for word in words)
+    words = ("swing_scale" if turned else "scale", "one_less_cos", "one_plus_cos", "sine_square", "twice_scale", "divisor_of_cos")
+    scale, less_cos, plus_cos, square, twice, divisor = (real(f"{word}_{angle.name}") for word in words)
     cos_name = real(f"cos_swing_{angle.name}") if turned else cosine(angle)
     sin_name = real(f"sin_swing_{angle.name}") if turned else sine(angle)
     length, right = amplitude.length, amplitude.right
@@ -168,14 +168,14 @@ def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _A
         *amplitude.naming.lets,
         *amplitude.guard,
         Let(scale, length, f"{angle.name}: law of cosines in the {equation.label} equation"),
-        Let(below, less, "zero where it is stretched or folded"),
-        Let(above, more, "zero where it is the other"),
-        Let(product, below * above),
-        Require(sp.Ge(product, -BOUNDARY * scale**2), Status.UNREACHABLE, f"{angle.name}: out of reach"),
-        Let(both, below + above, "twice the scale, with the rounding of its parts"),
-        Let(total, Select(sp.Gt(size(both), 0), both, sp.Integer(1))),
-        Let(cos_name, (above - below) / total),
-        Let(sin_name, 2 * sigma * Root(product) / size(total)),
+        Let(less_cos, less, "1 - cosine, times the scale"),
+        Let(plus_cos, more, "1 + cosine, times the scale"),
+        Let(square, less_cos * plus_cos, "the square of sine times scale"),
+        Require(sp.Ge(square, -BOUNDARY * scale**2), Status.UNREACHABLE, f"{angle.name}: out of reach"),
+        Let(twice, less_cos + plus_cos, "twice the scale, with the rounding of its parts"),
+        Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
+        Let(cos_name, (plus_cos - less_cos) / divisor),
+        Let(sin_name, 2 * sigma * Root(square) / size(divisor)),
     ]
     if turned:
         statements += [

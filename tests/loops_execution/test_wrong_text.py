@@ -57,7 +57,7 @@ _BRANCH, _FORWARD, _INITIALIZE = "METHOD PRIVATE SolveBranch", "METHOD PUBLIC Ax
 FIVE_BAR, TRIPOD, DELTA = "Kin_P2C_Type1", "Kin_Tripod_Rotary", "Kin_Delta_P3C_Type3"
 WRONG = {
     "CartesianToAxes: a knee on the other side": (
-        FIVE_BAR, Break(_BRANCH, "Softkin_Root(productA1)*sigmaKnee1", "-Softkin_Root(productA1)*sigmaKnee1"),
+        FIVE_BAR, Break(_BRANCH, "Softkin_Root(sineSquareA1)*sigmaKnee1", "-Softkin_Root(sineSquareA1)*sigmaKnee1"),
     ),
     "CartesianToAxes: two legs exchanged": (
         DELTA, Break(_BRANCH, "a.a0 := axisA1;\na.a1 := axisA2;", "a.a0 := axisA2;\na.a1 := axisA1;"),

@@ -759,13 +759,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         reach_closed = sqrt(
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
-        # zero where it is stretched or folded
-        below_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
-        # zero where it is the other
-        above_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
-        product_q3_closed = above_q3_closed*below_q3_closed
+        # 1 - cosine, times the scale
+        one_less_cos_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
+        sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
         # q3: out of reach
-        if not ((searched > 0.5) or (product_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed)):
+        if not ((searched > 0.5) or (sine_square_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed)):
             return Status.UNREACHABLE
         # without the offset there is no second crossing
         if not ((searched > 0.5) or (sigma_crossing > 0.0)):
@@ -967,12 +967,14 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 sin_q1_closed = sin(free_a1)
             cos_q1 = cos_q1_closed
             sin_q1 = sin_q1_closed
-            both_q3_closed = above_q3_closed + below_q3_closed  # twice the scale, with the rounding of its parts
-            sum_q3_closed = both_q3_closed if both_q3_closed > 0.0 else 1.0
+            # twice the scale, with the rounding of its parts
+            twice_scale_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+            divisor_of_cos_q3_closed = twice_scale_q3_closed if twice_scale_q3_closed > 0.0 else 1.0
             sin_swing_q3_closed = (
-                2.0*(sqrt(product_q3_closed) if product_q3_closed > 0.0 else 0.0)*sigma_elbow/sum_q3_closed
+                2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
+                /divisor_of_cos_q3_closed
             )
-            cos_swing_q3_closed = (above_q3_closed - below_q3_closed)/sum_q3_closed
+            cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
             # its reference where it is free
             if reach_closed > 1e-11*machine_scale:
                 arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed

@@ -1021,21 +1021,21 @@ class Ac6ThreeParallel(Mechanism):
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        below_q3 = (a2 + a3 + reach)*(a2 + a3 - reach)  # zero where it is stretched or folded
-        above_q3 = (a3 + reach - a2)*(a2 + reach - a3)  # zero where it is the other
-        product_q3 = above_q3*below_q3
+        one_less_cos_q3 = (a2 + a3 + reach)*(a2 + a3 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (a3 + reach - a2)*(a2 + reach - a3)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (product_q3 >= -1e-12*scale_q3*scale_q3):
+        if not (sine_square_q3 >= -1e-12*scale_q3*scale_q3):
             return Status.UNREACHABLE
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(divisor_of_cos_q3)
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_q2 = a2 + a3*cos_q3

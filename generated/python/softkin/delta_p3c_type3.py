@@ -774,13 +774,13 @@ class DeltaP3CType3(OffsetKinematics):
             (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
             *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
         )
-        # zero where it is stretched or folded
-        below_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
-        # zero where it is the other
-        above_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
         span_2_x = x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
@@ -796,13 +796,13 @@ class DeltaP3CType3(OffsetKinematics):
             (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
             *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
         )
-        # zero where it is stretched or folded
-        below_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
-        # zero where it is the other
-        above_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
         span_3_x = x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
@@ -818,18 +818,18 @@ class DeltaP3CType3(OffsetKinematics):
             (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
             *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
         )
-        # zero where it is stretched or folded
-        below_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
-        # zero where it is the other
-        above_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return Status.UNREACHABLE
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
         # rod 1
         pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
@@ -840,10 +840,10 @@ class DeltaP3CType3(OffsetKinematics):
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
         # rod 2
         pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
@@ -854,10 +854,10 @@ class DeltaP3CType3(OffsetKinematics):
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
-        sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
         # rod 3
         pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
@@ -1284,13 +1284,13 @@ class DeltaP3CType3(OffsetKinematics):
             (outer_arm_1 + span_1_x*sin_azimuth_1 - span_1_y*cos_azimuth_1)
             *(outer_arm_1 + span_1_y*cos_azimuth_1 - span_1_x*sin_azimuth_1)
         )
-        # zero where it is stretched or folded
-        below_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
-        # zero where it is the other
-        above_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = third_square_a1 - (divisor_a1 - inner_arm_1)*(divisor_a1 - inner_arm_1)
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (divisor_a1 + inner_arm_1)*(divisor_a1 + inner_arm_1) - third_square_a1
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
         span_2_x = flange_x + tcp_radius_2*cos_azimuth_2 - base_radius_2*cos_azimuth_2  # rod 2
         span_2_y = flange_y + tcp_radius_2*sin_azimuth_2 - base_radius_2*sin_azimuth_2  # rod 2
@@ -1306,13 +1306,13 @@ class DeltaP3CType3(OffsetKinematics):
             (outer_arm_2 + span_2_x*sin_azimuth_2 - span_2_y*cos_azimuth_2)
             *(outer_arm_2 + span_2_y*cos_azimuth_2 - span_2_x*sin_azimuth_2)
         )
-        # zero where it is stretched or folded
-        below_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
-        # zero where it is the other
-        above_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = third_square_a2 - (divisor_a2 - inner_arm_2)*(divisor_a2 - inner_arm_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (divisor_a2 + inner_arm_2)*(divisor_a2 + inner_arm_2) - third_square_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
         span_3_x = flange_x + tcp_radius_3*cos_azimuth_3 - base_radius_3*cos_azimuth_3  # rod 3
         span_3_y = flange_y + tcp_radius_3*sin_azimuth_3 - base_radius_3*sin_azimuth_3  # rod 3
@@ -1328,18 +1328,18 @@ class DeltaP3CType3(OffsetKinematics):
             (outer_arm_3 + span_3_x*sin_azimuth_3 - span_3_y*cos_azimuth_3)
             *(outer_arm_3 + span_3_y*cos_azimuth_3 - span_3_x*sin_azimuth_3)
         )
-        # zero where it is stretched or folded
-        below_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
-        # zero where it is the other
-        above_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = third_square_a3 - (divisor_a3 - inner_arm_3)*(divisor_a3 - inner_arm_3)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (divisor_a3 + inner_arm_3)*(divisor_a3 + inner_arm_3) - third_square_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return Status.UNREACHABLE
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + flange_z*sin_swing_a1/divisor_a1
         # rod 1
         pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
@@ -1350,10 +1350,10 @@ class DeltaP3CType3(OffsetKinematics):
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - flange_z*cos_swing_a1/divisor_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = flange_z - pivot_1_z
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + flange_z*sin_swing_a2/divisor_a2
         # rod 2
         pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
@@ -1364,10 +1364,10 @@ class DeltaP3CType3(OffsetKinematics):
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - flange_z*cos_swing_a2/divisor_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = flange_z - pivot_2_z
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
-        sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + flange_z*sin_swing_a3/divisor_a3
         # rod 3
         pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3

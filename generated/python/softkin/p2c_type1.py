@@ -409,13 +409,13 @@ class P2CType1(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
         swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
-        # zero where it is stretched or folded
-        below_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
-        # zero where it is the other
-        above_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
         span_2_x = tcp_displacement + x - displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
@@ -424,28 +424,28 @@ class P2CType1(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
         swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
-        # zero where it is stretched or folded
-        below_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
-        # zero where it is the other
-        above_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
         pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
         rod_2_x = x - pivot_2_x
@@ -654,13 +654,13 @@ class P2CType1(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
         swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
-        # zero where it is stretched or folded
-        below_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
-        # zero where it is the other
-        above_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
         span_2_x = flange_x + tcp_displacement - displacement  # rod 2
         effective_a2 = sqrt(flange_y*flange_y + span_2_x*span_2_x)  # effective length that the angle turns
@@ -669,28 +669,28 @@ class P2CType1(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
         swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
-        # zero where it is stretched or folded
-        below_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
-        # zero where it is the other
-        above_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - flange_y*sin_swing_a1/divisor_a1
         pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
         rod_1_x = flange_x - pivot_1_x
         sin_a1 = flange_y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = flange_y - pivot_1_y
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + flange_y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
         rod_2_x = flange_x - pivot_2_x

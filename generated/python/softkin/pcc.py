@@ -331,19 +331,21 @@ class PCC(OffsetKinematics):
         if not (abs(z) <= 1e-6*machine_scale):
             return Status.UNREACHABLE
         reach = sqrt(x*x + y*y)
-        # zero where it is stretched or folded
-        below_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-        # zero where it is the other
-        above_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        if not (product_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
+        if not (sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
             return Status.UNREACHABLE
-        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
-        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
+        # twice the scale, with the rounding of its parts
+        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = twice_scale_a2_from_a1 if twice_scale_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0*(sqrt(product_a2_from_a1) if product_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
+            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
+            /divisor_of_cos_a2_from_a1
         )
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
@@ -464,19 +466,21 @@ class PCC(OffsetKinematics):
         flange_x = x - point_x  # the flange behind the point
         flange_y = y - point_y  # the flange behind the point
         reach = sqrt(flange_x*flange_x + flange_y*flange_y)
-        # zero where it is stretched or folded
-        below_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-        # zero where it is the other
-        above_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        if not (product_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
+        if not (sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
             return Status.UNREACHABLE
-        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
-        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
+        # twice the scale, with the rounding of its parts
+        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = twice_scale_a2_from_a1 if twice_scale_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
         sin_a2_from_a1 = (
-            2.0*(sqrt(product_a2_from_a1) if product_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
+            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
+            /divisor_of_cos_a2_from_a1
         )
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:

@@ -494,11 +494,11 @@ class PosRRR(OffsetKinematics):
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        below_q3 = (a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)  # zero where it is stretched or folded
-        above_q3 = (effective_q3_2 + reach - a2)*(a2 + reach - effective_q3_2)  # zero where it is the other
-        product_q3 = above_q3*below_q3
+        one_less_cos_q3 = (a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (effective_q3_2 + reach - a2)*(a2 + reach - effective_q3_2)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (product_q3 >= -1e-12*swing_scale_q3_2*swing_scale_q3_2):
+        if not (sine_square_q3 >= -1e-12*swing_scale_q3_2*swing_scale_q3_2):
             return Status.UNREACHABLE
         # turned within rounding, where the rest can be reached
         if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
@@ -522,10 +522,10 @@ class PosRRR(OffsetKinematics):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sin_swing_q3 = -2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
-        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
+        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_q2 = -effective_q3_2*sin_swing_q3
@@ -815,11 +815,11 @@ class PosRRR(OffsetKinematics):
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        below_q3 = (a2 + divisor_q3 + reach)*(a2 + divisor_q3 - reach)  # zero where it is stretched or folded
-        above_q3 = (divisor_q3 + reach - a2)*(a2 + reach - divisor_q3)  # zero where it is the other
-        product_q3 = above_q3*below_q3
+        one_less_cos_q3 = (a2 + divisor_q3 + reach)*(a2 + divisor_q3 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (divisor_q3 + reach - a2)*(a2 + reach - divisor_q3)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (product_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
+        if not (sine_square_q3 >= -1e-12*swing_scale_q3*swing_scale_q3):
             return Status.UNREACHABLE
         # turned within rounding, where the rest can be reached
         if ahead_squared_q1 > 1e-6*machine_scale*machine_scale:
@@ -843,10 +843,10 @@ class PosRRR(OffsetKinematics):
         axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
-        sin_swing_q3 = -2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
         cos_q3 = tool_x*cos_swing_q3/divisor_q3 + tool_y*sin_swing_q3/divisor_q3
         sin_q3 = tool_x*sin_swing_q3/divisor_q3 - tool_y*cos_swing_q3/divisor_q3
         # q2: linear pair in the x_from_q1 and y_from_q1 equations; its reference where it is free

@@ -331,18 +331,18 @@ class Scara2Z(OffsetKinematics):
         ):
             return Status.BAD_INPUT
         reach = sqrt(x*x + y*y)
-        # zero where it is stretched or folded
-        below_a2 = (arm_length_1 + arm_length_2 + reach)*(arm_length_1 + arm_length_2 - reach)
-        # zero where it is the other
-        above_a2 = (arm_length_2 + reach - arm_length_1)*(arm_length_1 + reach - arm_length_2)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (arm_length_1 + arm_length_2 + reach)*(arm_length_1 + arm_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (arm_length_2 + reach - arm_length_1)*(arm_length_1 + reach - arm_length_2)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -1e-12*scale_a2*scale_a2):
+        if not (sine_square_a2 >= -1e-12*scale_a2*scale_a2):
             return Status.UNREACHABLE
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (above_a2 - below_a2)/sum_a2
-        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
@@ -486,18 +486,18 @@ class Scara2Z(OffsetKinematics):
         divisor_a2 = effective_a2 if effective_a2 > 1e-9*arm_length_1 else 1.0
         swing_scale_a2 = 2.0*arm_length_1*divisor_a2  # a2: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
-        # zero where it is stretched or folded
-        below_a2 = (arm_length_1 + divisor_a2 + reach)*(arm_length_1 + divisor_a2 - reach)
-        # zero where it is the other
-        above_a2 = (divisor_a2 + reach - arm_length_1)*(arm_length_1 + reach - divisor_a2)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (arm_length_1 + divisor_a2 + reach)*(arm_length_1 + divisor_a2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (divisor_a2 + reach - arm_length_1)*(arm_length_1 + reach - divisor_a2)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
         cos_a2 = tool_x*cos_swing_a2/divisor_a2 + point_y*sin_swing_a2/divisor_a2
         sin_a2 = tool_x*sin_swing_a2/divisor_a2 - point_y*cos_swing_a2/divisor_a2
         # a1: linear pair in the x and y equations; its reference where it is free

@@ -424,19 +424,19 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # zero where it is stretched or folded
-        below_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-        # zero where it is the other
-        above_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (product_a3 >= -1e-12*scale_a3*scale_a3):
+        if not (sine_square_a3 >= -1e-12*scale_a3*scale_a3):
             return Status.UNREACHABLE
         axis_a1 = offset_a1 + z
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_a3 = (above_a3 - below_a3)/sum_a3
-        sin_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
         # a2: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
@@ -644,20 +644,20 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         divisor_a3 = effective_a3 if effective_a3 > 1e-9*link_length_1 else 1.0
         swing_scale_a3 = 2.0*divisor_a3*link_length_1  # a3: law of cosines in the x² + y² equation
         reach = sqrt(x*x + y*y)
-        # zero where it is stretched or folded
-        below_a3 = (divisor_a3 + link_length_1 + reach)*(divisor_a3 + link_length_1 - reach)
-        # zero where it is the other
-        above_a3 = (link_length_1 + reach - divisor_a3)*(divisor_a3 + reach - link_length_1)
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = (divisor_a3 + link_length_1 + reach)*(divisor_a3 + link_length_1 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (link_length_1 + reach - divisor_a3)*(divisor_a3 + reach - link_length_1)
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return Status.UNREACHABLE
         a1 = z - point_z  # a1: affine in the z equation
         axis_a1 = a1 + offset_a1
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
-        sin_swing_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
         cos_a3 = tool_x*cos_swing_a3/divisor_a3 + tool_y*sin_swing_a3/divisor_a3
         sin_a3 = tool_x*sin_swing_a3/divisor_a3 - tool_y*cos_swing_a3/divisor_a3
         # a2: linear pair in the x and y equations; its reference where it is free

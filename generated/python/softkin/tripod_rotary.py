@@ -589,13 +589,13 @@ class TripodRotary(OffsetKinematics):
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
         third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
-        # zero where it is stretched or folded
-        below_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-        # zero where it is the other
-        above_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
         span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius  # rod 2
         span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
@@ -612,13 +612,13 @@ class TripodRotary(OffsetKinematics):
             (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
             *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
         )
-        # zero where it is stretched or folded
-        below_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
-        # zero where it is the other
-        above_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
         span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
@@ -633,28 +633,28 @@ class TripodRotary(OffsetKinematics):
             (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
             *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
         )
-        # zero where it is stretched or folded
-        below_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
-        # zero where it is the other
-        above_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return Status.UNREACHABLE
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
         pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         rod_2_x = x - pivot_2_x
@@ -664,10 +664,10 @@ class TripodRotary(OffsetKinematics):
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
-        sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
         pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         rod_3_x = x - pivot_3_x
@@ -1022,13 +1022,13 @@ class TripodRotary(OffsetKinematics):
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
         flange_y = y - point_y  # the flange behind the point
         third_square_a1 = (arm_length_2 + flange_y)*(arm_length_2 - flange_y)  # square of the third side
-        # zero where it is stretched or folded
-        below_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-        # zero where it is the other
-        above_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return Status.UNREACHABLE
         span_2_x = 0.5*fixed_length_1 + flange_x - 0.5*arm_1_radius  # rod 2
         span_2_y = flange_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1  # rod 2
@@ -1045,13 +1045,13 @@ class TripodRotary(OffsetKinematics):
             (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
             *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
         )
-        # zero where it is stretched or folded
-        below_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
-        # zero where it is the other
-        above_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return Status.UNREACHABLE
         span_3_y = flange_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
@@ -1066,28 +1066,28 @@ class TripodRotary(OffsetKinematics):
             (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
             *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
         )
-        # zero where it is stretched or folded
-        below_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
-        # zero where it is the other
-        above_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (product_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
+        if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return Status.UNREACHABLE
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - span_1_z*sin_swing_a1/divisor_a1
         pivot_1_x = fixed_length_1 - arm_1_radius - arm_length_1*cos_a1  # rod 1
         rod_1_x = flange_x - pivot_1_x
         sin_a1 = span_1_z*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = flange_z - pivot_1_z
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         pivot_2_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a2 - 0.5*fixed_length_1  # rod 2
         rod_2_x = flange_x - pivot_2_x
@@ -1097,10 +1097,10 @@ class TripodRotary(OffsetKinematics):
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
         rod_2_z = flange_z - pivot_2_z
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_swing_a3 = (above_a3 - below_a3)/sum_a3
-        sin_swing_a3 = -2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
         pivot_3_x = 0.5*arm_1_radius + 0.5*arm_length_1*cos_a3 - 0.5*fixed_length_1  # rod 3
         rod_3_x = flange_x - pivot_3_x

@@ -281,15 +281,15 @@ class ArrayPrograms(Programs):
         reach_closed = sqrt(
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
-        # zero where it is stretched or folded
-        below_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
-        # zero where it is the other
-        above_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
-        product_q3_closed = above_q3_closed*below_q3_closed
+        # 1 - cosine, times the scale
+        one_less_cos_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
+        sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
         # q3: out of reach
         require(
             status,
-            (searched > 0.5) | (product_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed),
+            (searched > 0.5) | (sine_square_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed),
             Status.UNREACHABLE,
         )
         # without the offset there is no second crossing
@@ -518,10 +518,11 @@ class ArrayPrograms(Programs):
             )
             cos_q1 = cos_q1_closed
             sin_q1 = sin_q1_closed
-            both_q3_closed = above_q3_closed + below_q3_closed  # twice the scale, with the rounding of its parts
-            sum_q3_closed = select(both_q3_closed > 0.0, both_q3_closed, 1.0)
-            sin_swing_q3_closed = 2.0*root(product_q3_closed)*sigma_elbow/sum_q3_closed
-            cos_swing_q3_closed = (above_q3_closed - below_q3_closed)/sum_q3_closed
+            # twice the scale, with the rounding of its parts
+            twice_scale_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+            divisor_of_cos_q3_closed = select(twice_scale_q3_closed > 0.0, twice_scale_q3_closed, 1.0)
+            sin_swing_q3_closed = 2.0*root(sine_square_q3_closed)*sigma_elbow/divisor_of_cos_q3_closed
+            cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
 
             def elsewhere_cos_q2_closed(free_a2: Real) -> Reals:
                 cos_q2_closed = cos(free_a2)  # its reference where it is free

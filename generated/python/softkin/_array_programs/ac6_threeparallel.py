@@ -736,11 +736,11 @@ class ArrayPrograms(Programs):
         r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
         wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        below_q3 = (a2 + a3 + reach)*(a2 + a3 - reach)  # zero where it is stretched or folded
-        above_q3 = (a3 + reach - a2)*(a2 + reach - a3)  # zero where it is the other
-        product_q3 = above_q3*below_q3
+        one_less_cos_q3 = (a2 + a3 + reach)*(a2 + a3 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (a3 + reach - a2)*(a2 + reach - a3)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        require(status, product_q3 >= -1e-12*scale_q3*scale_q3, Status.UNREACHABLE)
+        require(status, sine_square_q3 >= -1e-12*scale_q3*scale_q3, Status.UNREACHABLE)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -748,10 +748,10 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = select(absolute(both_q3) > 0.0, both_q3, 1.0)
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        sin_q3 = 2.0*root(product_q3)*sigma_elbow/absolute(sum_q3)
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = select(absolute(twice_scale_q3) > 0.0, twice_scale_q3, 1.0)
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(divisor_of_cos_q3)
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -2744,11 +2744,13 @@ class ArrayPrograms(Programs):
         reach_left_down = sqrt(
             wrist_x_from_q1_left_down*wrist_x_from_q1_left_down + wrist_y_from_q1_left_down*wrist_y_from_q1_left_down
         )
-        # zero where it is stretched or folded
-        below_q3_left_down = (a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
-        above_q3_left_down = (a3 + reach_left_down - a2)*(a2 + reach_left_down - a3)  # zero where it is the other
-        product_q3_left_down = above_q3_left_down*below_q3_left_down
-        refusal_left_down = select(product_q3_left_down >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
+        # 1 - cosine, times the scale
+        one_less_cos_q3_left_down = (a2 + a3 + reach_left_down)*(a2 + a3 - reach_left_down)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_left_down = (a3 + reach_left_down - a2)*(a2 + reach_left_down - a3)
+        # the square of sine times scale
+        sine_square_q3_left_down = one_less_cos_q3_left_down*one_plus_cos_q3_left_down
+        refusal_left_down = select(sine_square_q3_left_down >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -2757,10 +2759,11 @@ class ArrayPrograms(Programs):
         )
         # A1: its turn
         axis_a1_left_down = nearest_period(offset_a1 + degrees(sin_q1_left_down, cos_q1_left_down), near_a1)
-        both_q3_left_down = above_q3_left_down + below_q3_left_down  # twice the scale, with the rounding of its parts
-        sum_q3_left_down = select(absolute(both_q3_left_down) > 0.0, both_q3_left_down, 1.0)
-        cos_q3_left_down = (above_q3_left_down - below_q3_left_down)/sum_q3_left_down
-        sin_q3_left_up_down = 2.0*root(product_q3_left_down)/absolute(sum_q3_left_down)
+        # twice the scale, with the rounding of its parts
+        twice_scale_q3_left_down = one_less_cos_q3_left_down + one_plus_cos_q3_left_down
+        divisor_of_cos_q3_left_down = select(absolute(twice_scale_q3_left_down) > 0.0, twice_scale_q3_left_down, 1.0)
+        cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)/divisor_of_cos_q3_left_down
+        sin_q3_left_up_down = 2.0*root(sine_square_q3_left_down)/absolute(divisor_of_cos_q3_left_down)
 
         def elsewhere_direction_x_q2_left_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -3035,15 +3038,16 @@ class ArrayPrograms(Programs):
         reach_left_up = sqrt(
             wrist_x_from_q1_left_up*wrist_x_from_q1_left_up + wrist_y_from_q1_left_up*wrist_y_from_q1_left_up
         )
-        below_q3_left_up = (a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)  # zero where it is stretched or folded
-        above_q3_left_up = (a3 + reach_left_up - a2)*(a2 + reach_left_up - a3)  # zero where it is the other
-        product_q3_left_up = above_q3_left_up*below_q3_left_up
-        refusal_left_up = select(product_q3_left_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
+        one_less_cos_q3_left_up = (a2 + a3 + reach_left_up)*(a2 + a3 - reach_left_up)  # 1 - cosine, times the scale
+        one_plus_cos_q3_left_up = (a3 + reach_left_up - a2)*(a2 + reach_left_up - a3)  # 1 + cosine, times the scale
+        sine_square_q3_left_up = one_less_cos_q3_left_up*one_plus_cos_q3_left_up  # the square of sine times scale
+        refusal_left_up = select(sine_square_q3_left_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
         axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)  # A1: its turn
-        both_q3_left_up = above_q3_left_up + below_q3_left_up  # twice the scale, with the rounding of its parts
-        sum_q3_left_up = select(absolute(both_q3_left_up) > 0.0, both_q3_left_up, 1.0)
-        cos_q3_left_up = (above_q3_left_up - below_q3_left_up)/sum_q3_left_up
-        sin_q3_left_up_up = 2.0*root(product_q3_left_up)/absolute(sum_q3_left_up)
+        # twice the scale, with the rounding of its parts
+        twice_scale_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
+        divisor_of_cos_q3_left_up = select(absolute(twice_scale_q3_left_up) > 0.0, twice_scale_q3_left_up, 1.0)
+        cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)/divisor_of_cos_q3_left_up
+        sin_q3_left_up_up = 2.0*root(sine_square_q3_left_up)/absolute(divisor_of_cos_q3_left_up)
 
         def elsewhere_direction_x_q2_left_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -3320,18 +3324,23 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_right_down*wrist_x_from_q1_right_down
             + wrist_y_from_q1_right_down*wrist_y_from_q1_right_down
         )
-        # zero where it is stretched or folded
-        below_q3_right_down = (a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
-        above_q3_right_down = (a3 + reach_right_down - a2)*(a2 + reach_right_down - a3)  # zero where it is the other
-        product_q3_right_down = above_q3_right_down*below_q3_right_down
-        refusal_right_down = select(product_q3_right_down >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
+        # 1 - cosine, times the scale
+        one_less_cos_q3_right_down = (a2 + a3 + reach_right_down)*(a2 + a3 - reach_right_down)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_right_down = (a3 + reach_right_down - a2)*(a2 + reach_right_down - a3)
+        # the square of sine times scale
+        sine_square_q3_right_down = one_less_cos_q3_right_down*one_plus_cos_q3_right_down
+        # q3: out of reach
+        refusal_right_down = select(sine_square_q3_right_down >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)
         # A1: its turn
         axis_a1_right_down = nearest_period(offset_a1 + degrees(sin_q1_right_down, cos_q1_right_down), near_a1)
         # twice the scale, with the rounding of its parts
-        both_q3_right_down = above_q3_right_down + below_q3_right_down
-        sum_q3_right_down = select(absolute(both_q3_right_down) > 0.0, both_q3_right_down, 1.0)
-        cos_q3_right_down = (above_q3_right_down - below_q3_right_down)/sum_q3_right_down
-        sin_q3_right_up_down = 2.0*root(product_q3_right_down)/absolute(sum_q3_right_down)
+        twice_scale_q3_right_down = one_less_cos_q3_right_down + one_plus_cos_q3_right_down
+        divisor_of_cos_q3_right_down = select(
+            absolute(twice_scale_q3_right_down) > 0.0, twice_scale_q3_right_down, 1.0,
+        )
+        cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)/divisor_of_cos_q3_right_down
+        sin_q3_right_up_down = 2.0*root(sine_square_q3_right_down)/absolute(divisor_of_cos_q3_right_down)
 
         def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -3587,17 +3596,19 @@ class ArrayPrograms(Programs):
         reach_right_up = sqrt(
             wrist_x_from_q1_right_up*wrist_x_from_q1_right_up + wrist_y_from_q1_right_up*wrist_y_from_q1_right_up
         )
-        # zero where it is stretched or folded
-        below_q3_right_up = (a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
-        above_q3_right_up = (a3 + reach_right_up - a2)*(a2 + reach_right_up - a3)  # zero where it is the other
-        product_q3_right_up = above_q3_right_up*below_q3_right_up
-        refusal_right_up = select(product_q3_right_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
+        # 1 - cosine, times the scale
+        one_less_cos_q3_right_up = (a2 + a3 + reach_right_up)*(a2 + a3 - reach_right_up)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_right_up = (a3 + reach_right_up - a2)*(a2 + reach_right_up - a3)
+        sine_square_q3_right_up = one_less_cos_q3_right_up*one_plus_cos_q3_right_up  # the square of sine times scale
+        refusal_right_up = select(sine_square_q3_right_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
         # A1: its turn
         axis_a1_right_up = nearest_period(offset_a1 + degrees(sin_q1_right_up, cos_q1_right_up), near_a1)
-        both_q3_right_up = above_q3_right_up + below_q3_right_up  # twice the scale, with the rounding of its parts
-        sum_q3_right_up = select(absolute(both_q3_right_up) > 0.0, both_q3_right_up, 1.0)
-        cos_q3_right_up = (above_q3_right_up - below_q3_right_up)/sum_q3_right_up
-        sin_q3_right_up_up = 2.0*root(product_q3_right_up)/absolute(sum_q3_right_up)
+        # twice the scale, with the rounding of its parts
+        twice_scale_q3_right_up = one_less_cos_q3_right_up + one_plus_cos_q3_right_up
+        divisor_of_cos_q3_right_up = select(absolute(twice_scale_q3_right_up) > 0.0, twice_scale_q3_right_up, 1.0)
+        cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)/divisor_of_cos_q3_right_up
+        sin_q3_right_up_up = 2.0*root(sine_square_q3_right_up)/absolute(divisor_of_cos_q3_right_up)
 
         def elsewhere_direction_x_q2_right_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE

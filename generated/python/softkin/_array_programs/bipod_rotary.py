@@ -124,40 +124,40 @@ class ArrayPrograms(Programs):
         require(status, effective_a1 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*inner_arm, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
-        # zero where it is stretched or folded
-        below_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
-        # zero where it is the other
-        above_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
         span_2_x = tcp_displacement + x - displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*inner_arm, effective_a2, 1.0)
         swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
-        # zero where it is stretched or folded
-        below_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
-        # zero where it is the other
-        above_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1 = 2.0*root(product_a1)*sigma_knee_1/sum_a1
+        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = select(twice_scale_a1 > 0.0, twice_scale_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = 2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
         cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
         pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1  # rod 1
         rod_1_x = x - pivot_1_x
         sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
         pivot_1_y = -inner_arm*sin_a1  # rod 1
         rod_1_y = y - pivot_1_y
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2 = -2.0*root(product_a2)*sigma_knee_2/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = select(twice_scale_a2 > 0.0, twice_scale_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
         cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
         pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement  # rod 2
         rod_2_x = x - pivot_2_x
@@ -231,40 +231,40 @@ class ArrayPrograms(Programs):
         require(status, effective_a1 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*inner_arm, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*inner_arm  # a1: law of cosines in the rod 1 equation
-        # zero where it is stretched or folded
-        below_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
-        # zero where it is the other
-        above_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
         span_2_x = tcp_displacement + x - displacement  # rod 2
         effective_a2 = sqrt(span_2_x*span_2_x + y*y)  # effective length that the angle turns
         # a2: its effective length is too short
         require(status, effective_a2 > 1e-9*inner_arm, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*inner_arm, effective_a2, 1.0)
         swing_scale_a2 = 2.0*divisor_a2*inner_arm  # a2: law of cosines in the rod 2 equation
-        # zero where it is stretched or folded
-        below_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
-        # zero where it is the other
-        above_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1_outward = 2.0*root(product_a1)/sum_a1
+        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = select(twice_scale_a1 > 0.0, twice_scale_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1_outward = 2.0*root(sine_square_a1)/divisor_of_cos_a1
         cos_a1_outward = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1_outward/divisor_a1
         pivot_1_x_outward = tcp_displacement - displacement - inner_arm*cos_a1_outward  # rod 1
         rod_1_x_outward = x - pivot_1_x_outward
         sin_a1_outward = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1_outward/divisor_a1
         pivot_1_y_outward = -inner_arm*sin_a1_outward  # rod 1
         rod_1_y_outward = y - pivot_1_y_outward
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2_inward = 2.0*root(product_a2)/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = select(twice_scale_a2 > 0.0, twice_scale_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2_inward = 2.0*root(sine_square_a2)/divisor_of_cos_a2
         cos_a2_outward = span_2_x*cos_swing_a2/divisor_a2 - y*sin_swing_a2_inward/divisor_a2
         pivot_2_x_outward = displacement + inner_arm*cos_a2_outward - tcp_displacement  # rod 2
         rod_2_x_outward = x - pivot_2_x_outward

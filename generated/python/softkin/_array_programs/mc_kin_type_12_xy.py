@@ -160,17 +160,17 @@ class ArrayPrograms(Programs):
         require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
-        # zero where it is stretched or folded
-        below_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
-        # zero where it is the other
-        above_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1 = -2.0*root(product_a1)*sigma_t/sum_a1
+        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = select(twice_scale_a1 > 0.0, twice_scale_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/divisor_of_cos_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
         span_rear_x = (
@@ -196,23 +196,23 @@ class ArrayPrograms(Programs):
         require(status, effective_a2 > 1e-9*link_length_5, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 1e-9*link_length_5, effective_a2, 1.0)
         swing_scale_a2 = 2.0*divisor_a2*link_length_5  # a2: law of cosines in the rod rear equation
-        # zero where it is stretched or folded
-        below_a2 = (divisor_a2 + link_length_4 + link_length_5)*(divisor_a2 + link_length_5 - link_length_4)
-        # zero where it is the other
-        above_a2 = (link_length_4 + link_length_5 - divisor_a2)*(divisor_a2 + link_length_4 - link_length_5)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (divisor_a2 + link_length_4 + link_length_5)*(divisor_a2 + link_length_5 - link_length_4)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (link_length_4 + link_length_5 - divisor_a2)*(divisor_a2 + link_length_4 - link_length_5)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
+        require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
         pivot_upper_x = -link_length_1*sin_a1  # rod upper
         pivot_upper_y = -link_length_1*cos_a1  # rod upper
         centre_1_x = pivot_upper_x + pivot_upper_y*swap_xy - pivot_upper_x*swap_xy
         rod_1_x = x - centre_1_x
         centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
         rod_1_y = y - centre_1_y
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2 = -2.0*root(product_a2)*sigma_w/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = select(twice_scale_a2 > 0.0, twice_scale_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/divisor_of_cos_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
@@ -303,17 +303,17 @@ class ArrayPrograms(Programs):
         require(status, effective_a1 > 1e-9*link_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*link_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*divisor_a1*link_length_1  # a1: law of cosines in the rod upper equation
-        # zero where it is stretched or folded
-        below_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
-        # zero where it is the other
-        above_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (divisor_a1 + link_length_1 + link_length_2)*(divisor_a1 + link_length_1 - link_length_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (link_length_1 + link_length_2 - divisor_a1)*(divisor_a1 + link_length_2 - link_length_1)
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        require(status, product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1_right = 2.0*root(product_a1)/sum_a1
+        require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = select(twice_scale_a1 > 0.0, twice_scale_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1_right = 2.0*root(sine_square_a1)/divisor_of_cos_a1
         sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 - span_upper_y*sin_swing_a1_right/divisor_a1
         cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_right/divisor_a1
         # rod rear
@@ -343,19 +343,20 @@ class ArrayPrograms(Programs):
         # effective length that the angle turns
         effective_a2_left = sqrt(across_a2_left*across_a2_left + along_a2_left*along_a2_left)
         divisor_a2_left = select(effective_a2_left > 1e-9*link_length_5, effective_a2_left, 1.0)
-        # zero where it is stretched or folded
-        below_a2_left = (
+        # 1 - cosine, times the scale
+        one_less_cos_a2_left = (
             (divisor_a2_left + link_length_4 + link_length_5)*(divisor_a2_left + link_length_5 - link_length_4)
         )
-        # zero where it is the other
-        above_a2_left = (
+        # 1 + cosine, times the scale
+        one_plus_cos_a2_left = (
             (link_length_4 + link_length_5 - divisor_a2_left)*(divisor_a2_left + link_length_4 - link_length_5)
         )
-        both_a2_left = above_a2_left + below_a2_left  # twice the scale, with the rounding of its parts
-        sum_a2_left = select(both_a2_left > 0.0, both_a2_left, 1.0)
-        cos_swing_a2_left = (above_a2_left - below_a2_left)/sum_a2_left
-        product_a2_left = above_a2_left*below_a2_left
-        sin_swing_a2_left_right = 2.0*root(product_a2_left)/sum_a2_left
+        # twice the scale, with the rounding of its parts
+        twice_scale_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left
+        divisor_of_cos_a2_left = select(twice_scale_a2_left > 0.0, twice_scale_a2_left, 1.0)
+        cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/divisor_of_cos_a2_left
+        sine_square_a2_left = one_less_cos_a2_left*one_plus_cos_a2_left  # the square of sine times scale
+        sin_swing_a2_left_right = 2.0*root(sine_square_a2_left)/divisor_of_cos_a2_left
         cos_a2_left_left = (
             across_a2_left*sin_swing_a2_left_right/divisor_a2_left + along_a2_left*cos_swing_a2_left/divisor_a2_left
         )
@@ -448,7 +449,7 @@ class ArrayPrograms(Programs):
         refusal_left_left, refusal_left_right = elsewhere(
             (
                 (effective_a2_left > 1e-9*link_length_5)
-                & (product_a2_left >= -1e-12*swing_scale_a2_left*swing_scale_a2_left)
+                & (sine_square_a2_left >= -1e-12*swing_scale_a2_left*swing_scale_a2_left)
             ),
             (refusal_left_left, refusal_left_right),
             elsewhere_refusal_left_left,
@@ -490,19 +491,20 @@ class ArrayPrograms(Programs):
         # effective length that the angle turns
         effective_a2_right = sqrt(across_a2_right*across_a2_right + along_a2_right*along_a2_right)
         divisor_a2_right = select(effective_a2_right > 1e-9*link_length_5, effective_a2_right, 1.0)
-        # zero where it is stretched or folded
-        below_a2_right = (
+        # 1 - cosine, times the scale
+        one_less_cos_a2_right = (
             (divisor_a2_right + link_length_4 + link_length_5)*(divisor_a2_right + link_length_5 - link_length_4)
         )
-        # zero where it is the other
-        above_a2_right = (
+        # 1 + cosine, times the scale
+        one_plus_cos_a2_right = (
             (link_length_4 + link_length_5 - divisor_a2_right)*(divisor_a2_right + link_length_4 - link_length_5)
         )
-        both_a2_right = above_a2_right + below_a2_right  # twice the scale, with the rounding of its parts
-        sum_a2_right = select(both_a2_right > 0.0, both_a2_right, 1.0)
-        cos_swing_a2_right = (above_a2_right - below_a2_right)/sum_a2_right
-        product_a2_right = above_a2_right*below_a2_right
-        sin_swing_a2_right_right = 2.0*root(product_a2_right)/sum_a2_right
+        # twice the scale, with the rounding of its parts
+        twice_scale_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right
+        divisor_of_cos_a2_right = select(twice_scale_a2_right > 0.0, twice_scale_a2_right, 1.0)
+        cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/divisor_of_cos_a2_right
+        sine_square_a2_right = one_less_cos_a2_right*one_plus_cos_a2_right  # the square of sine times scale
+        sin_swing_a2_right_right = 2.0*root(sine_square_a2_right)/divisor_of_cos_a2_right
         cos_a2_right_left = (
             across_a2_right*sin_swing_a2_right_right/divisor_a2_right
             + along_a2_right*cos_swing_a2_right/divisor_a2_right
@@ -599,7 +601,7 @@ class ArrayPrograms(Programs):
         refusal_right_left, refusal_right_right = elsewhere(
             (
                 (effective_a2_right > 1e-9*link_length_5)
-                & (product_a2_right >= -1e-12*swing_scale_a2_right*swing_scale_a2_right)
+                & (sine_square_a2_right >= -1e-12*swing_scale_a2_right*swing_scale_a2_right)
             ),
             (refusal_right_left, refusal_right_right),
             elsewhere_refusal_right_left,

@@ -87,17 +87,18 @@ class ArrayPrograms(Programs):
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
-        # zero where it is stretched or folded
-        below_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-        # zero where it is the other
-        above_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        require(status, product_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1, Status.UNREACHABLE)
-        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
-        sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
-        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
-        sin_a2_from_a1 = 2.0*root(product_a2_from_a1)*sigma_elbow/sum_a2_from_a1
+        require(status, sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1, Status.UNREACHABLE)
+        # twice the scale, with the rounding of its parts
+        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = select(twice_scale_a2_from_a1 > 0.0, twice_scale_a2_from_a1, 1.0)
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
+        sin_a2_from_a1 = 2.0*root(sine_square_a2_from_a1)*sigma_elbow/divisor_of_cos_a2_from_a1
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -184,17 +185,18 @@ class ArrayPrograms(Programs):
         # z: a planar machine has none
         require(status, absolute(z) <= 1e-6*machine_scale, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
-        # zero where it is stretched or folded
-        below_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-        # zero where it is the other
-        above_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-        product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1  # the square of sine times scale
         # a2_from_a1: out of reach
-        require(status, product_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1, Status.UNREACHABLE)
-        both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1  # twice the scale, with the rounding of its parts
-        sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
-        cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
-        sin_a2_from_a1_right = 2.0*root(product_a2_from_a1)/sum_a2_from_a1
+        require(status, sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1, Status.UNREACHABLE)
+        # twice the scale, with the rounding of its parts
+        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        divisor_of_cos_a2_from_a1 = select(twice_scale_a2_from_a1 > 0.0, twice_scale_a2_from_a1, 1.0)
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
+        sin_a2_from_a1_right = 2.0*root(sine_square_a2_from_a1)/divisor_of_cos_a2_from_a1
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE

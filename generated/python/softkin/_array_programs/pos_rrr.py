@@ -207,11 +207,11 @@ class ArrayPrograms(Programs):
         )
         wrist_x_from_q1 = ahead_q1 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        below_q3 = (a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)  # zero where it is stretched or folded
-        above_q3 = (effective_q3_2 + reach - a2)*(a2 + reach - effective_q3_2)  # zero where it is the other
-        product_q3 = above_q3*below_q3
+        one_less_cos_q3 = (a2 + effective_q3_2 + reach)*(a2 + effective_q3_2 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (effective_q3_2 + reach - a2)*(a2 + reach - effective_q3_2)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        require(status, product_q3 >= -1e-12*swing_scale_q3_2*swing_scale_q3_2, Status.UNREACHABLE)
+        require(status, sine_square_q3 >= -1e-12*swing_scale_q3_2*swing_scale_q3_2, Status.UNREACHABLE)
 
         def elsewhere_cos_q1(
             cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real, turned_cos_q1_for_q3: Real,
@@ -269,10 +269,10 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = select(both_q3 > 0.0, both_q3, 1.0)
-        sin_swing_q3 = -2.0*root(product_q3)*sigma_elbow/sum_q3
-        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = select(twice_scale_q3 > 0.0, twice_scale_q3, 1.0)
+        sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -586,13 +586,13 @@ class ArrayPrograms(Programs):
         )
         wrist_x_from_q1_front = ahead_q1_front - a1  # what the unknown links must span
         reach_front = sqrt(wrist_x_from_q1_front*wrist_x_from_q1_front + wrist_y_from_q1*wrist_y_from_q1)
-        # zero where it is stretched or folded
-        below_q3_front = (a2 + effective_q3_2 + reach_front)*(a2 + effective_q3_2 - reach_front)
-        # zero where it is the other
-        above_q3_front = (effective_q3_2 + reach_front - a2)*(a2 + reach_front - effective_q3_2)
-        product_q3_front = above_q3_front*below_q3_front
+        # 1 - cosine, times the scale
+        one_less_cos_q3_front = (a2 + effective_q3_2 + reach_front)*(a2 + effective_q3_2 - reach_front)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_front = (effective_q3_2 + reach_front - a2)*(a2 + reach_front - effective_q3_2)
+        sine_square_q3_front = one_less_cos_q3_front*one_plus_cos_q3_front  # the square of sine times scale
         # q3: out of reach
-        refusal_front = select(product_q3_front >= -1e-12*swing_scale_q3_2*swing_scale_q3_2, 0.0, 3.0)
+        refusal_front = select(sine_square_q3_front >= -1e-12*swing_scale_q3_2*swing_scale_q3_2, 0.0, 3.0)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
@@ -600,10 +600,11 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
-        both_q3_front = above_q3_front + below_q3_front  # twice the scale, with the rounding of its parts
-        sum_q3_front = select(both_q3_front > 0.0, both_q3_front, 1.0)
-        sin_swing_q3_front_up = 2.0*root(product_q3_front)/sum_q3_front
-        cos_swing_q3_front = (above_q3_front - below_q3_front)/sum_q3_front
+        # twice the scale, with the rounding of its parts
+        twice_scale_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
+        divisor_of_cos_q3_front = select(twice_scale_q3_front > 0.0, twice_scale_q3_front, 1.0)
+        sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/divisor_of_cos_q3_front
+        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front
 
         def elsewhere_direction_x_q2_front_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -668,18 +669,19 @@ class ArrayPrograms(Programs):
         axis_a3_front_up = nearest_period(offset_a3 + degrees(sin_q3_front_up, cos_q3_front_up), near_a3)
         wrist_x_from_q1_back = ahead_q1_back - a1  # what the unknown links must span
         reach_back = sqrt(wrist_x_from_q1_back*wrist_x_from_q1_back + wrist_y_from_q1*wrist_y_from_q1)
-        # zero where it is stretched or folded
-        below_q3_back = (a2 + effective_q3_2 + reach_back)*(a2 + effective_q3_2 - reach_back)
-        # zero where it is the other
-        above_q3_back = (effective_q3_2 + reach_back - a2)*(a2 + reach_back - effective_q3_2)
-        product_q3_back = above_q3_back*below_q3_back
+        # 1 - cosine, times the scale
+        one_less_cos_q3_back = (a2 + effective_q3_2 + reach_back)*(a2 + effective_q3_2 - reach_back)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_back = (effective_q3_2 + reach_back - a2)*(a2 + reach_back - effective_q3_2)
+        sine_square_q3_back = one_less_cos_q3_back*one_plus_cos_q3_back  # the square of sine times scale
         # q3: out of reach
-        refusal_back = select(product_q3_back >= -1e-12*swing_scale_q3_2*swing_scale_q3_2, 0.0, 3.0)
+        refusal_back = select(sine_square_q3_back >= -1e-12*swing_scale_q3_2*swing_scale_q3_2, 0.0, 3.0)
         axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
-        both_q3_back = above_q3_back + below_q3_back  # twice the scale, with the rounding of its parts
-        sum_q3_back = select(both_q3_back > 0.0, both_q3_back, 1.0)
-        sin_swing_q3_back_up = 2.0*root(product_q3_back)/sum_q3_back
-        cos_swing_q3_back = (above_q3_back - below_q3_back)/sum_q3_back
+        # twice the scale, with the rounding of its parts
+        twice_scale_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back
+        divisor_of_cos_q3_back = select(twice_scale_q3_back > 0.0, twice_scale_q3_back, 1.0)
+        sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/divisor_of_cos_q3_back
+        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back
 
         def elsewhere_direction_x_q2_back_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE

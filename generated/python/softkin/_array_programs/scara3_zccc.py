@@ -122,18 +122,18 @@ class ArrayPrograms(Programs):
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # zero where it is stretched or folded
-        below_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-        # zero where it is the other
-        above_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        require(status, product_a3 >= -1e-12*scale_a3*scale_a3, Status.UNREACHABLE)
+        require(status, sine_square_a3 >= -1e-12*scale_a3*scale_a3, Status.UNREACHABLE)
         axis_a1 = offset_a1 + z
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_a3 = (above_a3 - below_a3)/sum_a3
-        sin_a3 = 2.0*root(product_a3)*sigma_elbow/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = select(twice_scale_a3 > 0.0, twice_scale_a3, 1.0)
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_a3 = 2.0*root(sine_square_a3)*sigma_elbow/divisor_of_cos_a3
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -245,18 +245,18 @@ class ArrayPrograms(Programs):
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # zero where it is stretched or folded
-        below_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-        # zero where it is the other
-        above_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        require(status, product_a3 >= -1e-12*scale_a3*scale_a3, Status.UNREACHABLE)
+        require(status, sine_square_a3 >= -1e-12*scale_a3*scale_a3, Status.UNREACHABLE)
         axis_a1 = offset_a1 + z
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
-        cos_a3 = (above_a3 - below_a3)/sum_a3
-        sin_a3_right = 2.0*root(product_a3)/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = select(twice_scale_a3 > 0.0, twice_scale_a3, 1.0)
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_a3_right = 2.0*root(sine_square_a3)/divisor_of_cos_a3
 
         def elsewhere_direction_x_a2_right(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE

@@ -118,17 +118,17 @@ class ArrayPrograms(Programs):
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
-        # zero where it is stretched or folded
-        below_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-        # zero where it is the other
-        above_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, product_a2 >= -1e-12*scale_a2*scale_a2, Status.UNREACHABLE)
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (above_a2 - below_a2)/sum_a2
-        sin_a2 = 2.0*root(product_a2)*sigma_elbow/sum_a2
+        require(status, sine_square_a2 >= -1e-12*scale_a2*scale_a2, Status.UNREACHABLE)
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = select(twice_scale_a2 > 0.0, twice_scale_a2, 1.0)
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2 = 2.0*root(sine_square_a2)*sigma_elbow/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -238,17 +238,17 @@ class ArrayPrograms(Programs):
         # the tool points exactly the opposite way
         require(status, heading_length > 1e-11, Status.UNREACHABLE)
         reach = sqrt(x*x + y*y)
-        # zero where it is stretched or folded
-        below_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-        # zero where it is the other
-        above_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        require(status, product_a2 >= -1e-12*scale_a2*scale_a2, Status.UNREACHABLE)
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
-        cos_a2 = (above_a2 - below_a2)/sum_a2
-        sin_a2_right = 2.0*root(product_a2)/sum_a2
+        require(status, sine_square_a2 >= -1e-12*scale_a2*scale_a2, Status.UNREACHABLE)
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = select(twice_scale_a2 > 0.0, twice_scale_a2, 1.0)
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2_right = 2.0*root(sine_square_a2)/divisor_of_cos_a2
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE

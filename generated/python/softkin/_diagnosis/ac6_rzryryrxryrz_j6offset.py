@@ -68,10 +68,10 @@ def branch(
     reach_closed = sqrt(
         wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
     )
-    below_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
-    above_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
-    product_q3_closed = above_q3_closed*below_q3_closed
-    if not ((searched > 0.5) or (product_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed)):
+    one_less_cos_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
+    one_plus_cos_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
+    sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed
+    if not ((searched > 0.5) or (sine_square_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed)):
         missing = (
             0.5*abs(effective_q3_closed + reach_closed - a2) + 0.5*abs(a2 + reach_closed - effective_q3_closed)
             + 0.5*abs(a2 + effective_q3_closed - reach_closed) + 0.5*abs(a2 + effective_q3_closed + reach_closed) - a2
@@ -256,12 +256,13 @@ def branch(
             sin_q1_closed = sin(free_a1)
         cos_q1 = cos_q1_closed
         sin_q1 = sin_q1_closed
-        both_q3_closed = above_q3_closed + below_q3_closed
-        sum_q3_closed = both_q3_closed if both_q3_closed > 0.0 else 1.0
+        twice_scale_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+        divisor_of_cos_q3_closed = twice_scale_q3_closed if twice_scale_q3_closed > 0.0 else 1.0
         sin_swing_q3_closed = (
-            2.0*(sqrt(product_q3_closed) if product_q3_closed > 0.0 else 0.0)*sigma_elbow/sum_q3_closed
+            2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
+            /divisor_of_cos_q3_closed
         )
-        cos_swing_q3_closed = (above_q3_closed - below_q3_closed)/sum_q3_closed
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
         if reach_closed > 1e-11*machine_scale:
             arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed
             arm_across_q2_closed = a2 + effective_q3_closed*cos_swing_q3_closed

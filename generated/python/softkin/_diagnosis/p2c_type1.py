@@ -49,10 +49,10 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
     divisor_a1 = effective_a1 if effective_a1 > 1e-9*inner_arm else 1.0
     swing_scale_a1 = 2.0*divisor_a1*inner_arm
-    below_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
-    above_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
-    product_a1 = above_a1*below_a1
-    if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+    one_less_cos_a1 = (divisor_a1 + inner_arm + outer_arm)*(divisor_a1 + inner_arm - outer_arm)
+    one_plus_cos_a1 = (inner_arm + outer_arm - divisor_a1)*(divisor_a1 + outer_arm - inner_arm)
+    sine_square_a1 = one_less_cos_a1*one_plus_cos_a1
+    if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
         missing = (
             0.5*abs(inner_arm + outer_arm - divisor_a1) + 0.5*abs(divisor_a1 + outer_arm - inner_arm)
             + 0.5*abs(divisor_a1 + inner_arm - outer_arm) + 0.5*abs(divisor_a1 + inner_arm + outer_arm) - divisor_a1
@@ -65,30 +65,30 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
     divisor_a2 = effective_a2 if effective_a2 > 1e-9*inner_arm else 1.0
     swing_scale_a2 = 2.0*divisor_a2*inner_arm
-    below_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
-    above_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
-    product_a2 = above_a2*below_a2
-    if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+    one_less_cos_a2 = (inner_arm + outer_arm - divisor_a2)*(divisor_a2 + outer_arm - inner_arm)
+    one_plus_cos_a2 = (divisor_a2 + inner_arm + outer_arm)*(divisor_a2 + inner_arm - outer_arm)
+    sine_square_a2 = one_less_cos_a2*one_plus_cos_a2
+    if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
         missing = (
             0.5*abs(inner_arm + outer_arm - divisor_a2) + 0.5*abs(divisor_a2 + outer_arm - inner_arm)
             + 0.5*abs(divisor_a2 + inner_arm - outer_arm) + 0.5*abs(divisor_a2 + inner_arm + outer_arm) - divisor_a2
             - inner_arm - outer_arm
         )
         return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-    both_a1 = above_a1 + below_a1
-    sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-    cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-    sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
+    twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1
+    divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
+    cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+    sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
     cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
     pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1
     rod_1_x = x - pivot_1_x
     sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
     pivot_1_y = -inner_arm*sin_a1
     rod_1_y = y - pivot_1_y
-    both_a2 = above_a2 + below_a2
-    sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-    cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-    sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
+    twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2
+    divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+    cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+    sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
     cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
     pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement
     rod_2_x = x - pivot_2_x

@@ -41,21 +41,22 @@ def branch(
         missing = abs(z) - 1e-6*machine_scale
         return Diagnosis(Status.UNREACHABLE, "z: a planar machine has none [u]", missing)
     reach = sqrt(x*x + y*y)
-    below_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-    above_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-    product_a2_from_a1 = above_a2_from_a1*below_a2_from_a1
-    if not (product_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
+    one_less_cos_a2_from_a1 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+    one_plus_cos_a2_from_a1 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+    sine_square_a2_from_a1 = one_less_cos_a2_from_a1*one_plus_cos_a2_from_a1
+    if not (sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
         missing = (
             0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
             + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
             - link_length_1 - link_length_2 - reach
         )
         return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
-    both_a2_from_a1 = above_a2_from_a1 + below_a2_from_a1
-    sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
-    cos_a2_from_a1 = (above_a2_from_a1 - below_a2_from_a1)/sum_a2_from_a1
+    twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+    divisor_of_cos_a2_from_a1 = twice_scale_a2_from_a1 if twice_scale_a2_from_a1 > 0.0 else 1.0
+    cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
     sin_a2_from_a1 = (
-        2.0*(sqrt(product_a2_from_a1) if product_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
+        2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
+        /divisor_of_cos_a2_from_a1
     )
     if reach > 1e-11*machine_scale:
         arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1

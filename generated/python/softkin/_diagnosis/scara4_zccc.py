@@ -54,10 +54,10 @@ def branch(
     sin_heading = heading_across/heading_divisor
     wrist_y = y - link_length_3*sin_heading
     reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-    below_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-    above_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-    product_a3 = above_a3*below_a3
-    if not (product_a3 >= -1e-12*scale_a3*scale_a3):
+    one_less_cos_a3 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+    one_plus_cos_a3 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+    sine_square_a3 = one_less_cos_a3*one_plus_cos_a3
+    if not (sine_square_a3 >= -1e-12*scale_a3*scale_a3):
         missing = (
             0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
             + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
@@ -65,10 +65,10 @@ def branch(
         )
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
     axis_a1 = offset_a1 + z
-    both_a3 = above_a3 + below_a3
-    sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-    cos_a3 = (above_a3 - below_a3)/sum_a3
-    sin_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
+    twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3
+    divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
+    cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+    sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
     if reach > 1e-11*machine_scale:
         arm_along_a2 = link_length_1 + link_length_2*cos_a3
         arm_across_a2 = link_length_2*sin_a3

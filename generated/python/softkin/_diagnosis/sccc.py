@@ -59,20 +59,20 @@ def branch(
     sin_heading = heading_across/heading_divisor
     wrist_y = y - link_length_3*sin_heading
     reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-    below_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
-    above_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
-    product_a2 = above_a2*below_a2
-    if not (product_a2 >= -1e-12*scale_a2*scale_a2):
+    one_less_cos_a2 = (link_length_1 + link_length_2 + reach)*(link_length_1 + link_length_2 - reach)
+    one_plus_cos_a2 = (link_length_2 + reach - link_length_1)*(link_length_1 + reach - link_length_2)
+    sine_square_a2 = one_less_cos_a2*one_plus_cos_a2
+    if not (sine_square_a2 >= -1e-12*scale_a2*scale_a2):
         missing = (
             0.5*abs(link_length_2 + reach - link_length_1) + 0.5*abs(link_length_1 + reach - link_length_2)
             + 0.5*abs(link_length_1 + link_length_2 - reach) + 0.5*abs(link_length_1 + link_length_2 + reach)
             - link_length_1 - link_length_2 - reach
         )
         return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-    both_a2 = above_a2 + below_a2
-    sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-    cos_a2 = (above_a2 - below_a2)/sum_a2
-    sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
+    twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2
+    divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+    cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+    sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
     if reach > 1e-11*machine_scale:
         arm_along_a1 = link_length_1 + link_length_2*cos_a2
         arm_across_a1 = link_length_2*sin_a2

@@ -239,13 +239,13 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
-        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        product_q3_down = above_q3*below_q3
-        sin_q3 = 2.0*(sqrt(product_q3_down) if product_q3_down > 0.0 else 0.0)/abs(sum_q3)
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sine_square_q3_down = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -391,13 +391,13 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
-        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        product_q3_up = above_q3*below_q3
-        sin_q3 = 2.0*(sqrt(product_q3_up) if product_q3_up > 0.0 else 0.0)/abs(sum_q3)
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sine_square_q3_up = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -447,7 +447,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_left_down_up = nearest_period(axis_a4_left_down_up, open_a4)
         if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1:
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6 and product_q3_down >= -scale_q3_squared_times_rounding:
+            if axis_a5_left_down >= lowest_a5 and axis_a6_left_down >= lowest_a6 and axis_a5_left_down <= highest_a5 and axis_a6_left_down <= highest_a6 and sine_square_q3_down >= -scale_q3_squared_times_rounding:
                 refusal_left_up_down = (
                     0.0
                     if (axis_a2_left_up_down >= lowest_a2) and (axis_a3_left_up_down >= lowest_a3) and (axis_a4_left_up_down >= lowest_a4) and (
@@ -466,7 +466,7 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_left_up_down = 3.0
                 refusal_left_down_down = 3.0
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6 and product_q3_up >= -scale_q3_squared_times_rounding:
+            if axis_a5_left_up >= lowest_a5 and axis_a6_left_up >= lowest_a6 and axis_a5_left_up <= highest_a5 and axis_a6_left_up <= highest_a6 and sine_square_q3_up >= -scale_q3_squared_times_rounding:
                 refusal_left_up_up = (
                     0.0
                     if (axis_a2_left_up_up >= lowest_a2) and (axis_a3_left_up_up >= lowest_a3) and (axis_a4_left_up_up >= lowest_a4) and (
@@ -617,13 +617,13 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
-        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        product_q3_down = above_q3*below_q3
-        sin_q3 = 2.0*(sqrt(product_q3_down) if product_q3_down > 0.0 else 0.0)/abs(sum_q3)
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sine_square_q3_down = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -763,13 +763,13 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
-        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        product_q3_up = above_q3*below_q3
-        sin_q3 = 2.0*(sqrt(product_q3_up) if product_q3_up > 0.0 else 0.0)/abs(sum_q3)
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sine_square_q3_up = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -819,7 +819,7 @@ def unrolled(k: Constants) -> Unrolled:
             axis_a4_right_down_up = nearest_period(axis_a4_right_down_up, open_a4)
         if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1:
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6 and product_q3_down >= -scale_q3_squared_times_rounding:
+            if axis_a5_right_down >= lowest_a5 and axis_a6_right_down >= lowest_a6 and axis_a5_right_down <= highest_a5 and axis_a6_right_down <= highest_a6 and sine_square_q3_down >= -scale_q3_squared_times_rounding:
                 refusal_right_up_down = (
                     0.0
                     if (axis_a2_right_up_down >= lowest_a2) and (axis_a3_right_up_down >= lowest_a3) and (axis_a4_right_up_down >= lowest_a4) and (
@@ -838,7 +838,7 @@ def unrolled(k: Constants) -> Unrolled:
                 refusal_right_up_down = 3.0
                 refusal_right_down_down = 3.0
             # limits of A2, limits of A3, limits of A4
-            if axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6 and product_q3_up >= -scale_q3_squared_times_rounding:
+            if axis_a5_right_up >= lowest_a5 and axis_a6_right_up >= lowest_a6 and axis_a5_right_up <= highest_a5 and axis_a6_right_up <= highest_a6 and sine_square_q3_up >= -scale_q3_squared_times_rounding:
                 refusal_right_up_up = (
                     0.0
                     if (axis_a2_right_up_up >= lowest_a2) and (axis_a3_right_up_up >= lowest_a3) and (axis_a4_right_up_up >= lowest_a4) and (
@@ -1093,15 +1093,15 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
-        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
-        product_q3 = above_q3*below_q3
-        refusal_left_down = 0.0 if product_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        refusal_left_down = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*RADIAN
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/abs(sum_q3)
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1226,14 +1226,14 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
-        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
-        product_q3 = above_q3*below_q3
-        refusal_left_up = 0.0 if product_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/abs(sum_q3)
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        refusal_left_up = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1382,15 +1382,15 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
-        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
-        product_q3 = above_q3*below_q3
-        refusal_right_down = 0.0 if product_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        refusal_right_down = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*RADIAN
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/abs(sum_q3)
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1515,14 +1515,14 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        below_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # zero where it is stretched or folded
-        above_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # zero where it is the other
-        product_q3 = above_q3*below_q3
-        refusal_right_up = 0.0 if product_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/abs(sum_q3)
+        one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        refusal_right_up = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1750,16 +1750,16 @@ def unrolled(k: Constants) -> Unrolled:
             r22_from_q1_before_q6 = r32*cos_q6 + r31*sin_q6
             wrist_y_from_q1 = wrist_z + d5*r22_from_q1_before_q6 - d1
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        below_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)  # zero where it is stretched or folded
-        above_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # zero where it is the other
-        product_q3 = above_q3*below_q3
+        one_less_cos_q3 = (a2_plus_a3 + reach)*(a2_plus_a3 - reach)  # 1 - cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_a3)*(a2_minus_a3 + reach)  # 1 + cosine, times the scale
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (product_q3 >= -scale_q3_squared_times_rounding):
+        if not (sine_square_q3 >= -scale_q3_squared_times_rounding):
             return None
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
-        cos_q3 = (above_q3 - below_q3)/sum_q3
-        sin_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(divisor_of_cos_q3)
         if reach > machine_scale_times_free_angle:
             angle_q2 = arctan2(wrist_y_from_q1, wrist_x_from_q1) - arctan2(a3*sin_q3, a2 + a3*cos_q3)
         else:

@@ -77,19 +77,23 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
         divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
-        # zero where it is stretched or folded
-        below_a1 = (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
-        # zero where it is the other
-        above_a1 = (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (
+            (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (
+            (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
+        )
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return 4*(3.0,)
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)/sum_a1
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/divisor_of_cos_a1
         sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
         sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
@@ -120,16 +124,20 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # zero where it is stretched or folded
-        below_a2 = (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
-        # zero where it is the other
-        above_a2 = (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (
+            (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (
+            (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+        )
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        product_a2 = above_a2*below_a2
-        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
         cos_a2_left = (
             across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
@@ -158,7 +166,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_left_right - open_a2 < 179.999999999:
             axis_a2_left_right = nearest_period(axis_a2_left_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
-        if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if axis_a1_left >= lowest_a1 and axis_a1_left <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
             part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
@@ -227,16 +235,20 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # zero where it is stretched or folded
-        below_a2 = (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
-        # zero where it is the other
-        above_a2 = (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (
+            (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (
+            (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+        )
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        product_a2 = above_a2*below_a2
-        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
         cos_a2_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
@@ -255,7 +267,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a2_right_right - open_a2 < 179.999999999:
             axis_a2_right_right = nearest_period(axis_a2_right_right, open_a2)
         # arms_aligned: the other assembly mode, or too near to losing the plate, limits of A2
-        if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if axis_a1_right >= lowest_a1 and axis_a1_right <= highest_a1 and effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
             part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
@@ -337,19 +349,23 @@ def unrolled(k: Constants) -> Unrolled:
         swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
         divisor_a1_minus_link_length_2 = divisor_a1 - link_length_2
         divisor_a1_plus_link_length_2 = divisor_a1 + link_length_2
-        # zero where it is stretched or folded
-        below_a1 = (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
-        # zero where it is the other
-        above_a1 = (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (
+            (divisor_a1_minus_link_length_2 + link_length_1)*(divisor_a1_plus_link_length_2 + link_length_1)
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (
+            (link_length_1 - divisor_a1_minus_link_length_2)*(divisor_a1_plus_link_length_2 - link_length_1)
+        )
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return 4*(None,)
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)/sum_a1
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/divisor_of_cos_a1
         sin_swing_a1_times_span_upper_y_by_divisor_a1 = span_upper_y*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
         cos_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_span_upper_x_by_divisor_a1 - sin_swing_a1_times_span_upper_y_by_divisor_a1
         sin_swing_a1_times_span_upper_x_by_divisor_a1 = span_upper_x*sin_swing_a1/divisor_a1
@@ -380,16 +396,20 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # zero where it is stretched or folded
-        below_a2 = (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
-        # zero where it is the other
-        above_a2 = (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (
+            (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (
+            (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+        )
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        product_a2 = above_a2*below_a2
-        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2_left_right = across_a2*sin_swing_a2/divisor_a2
         cos_a2_left_left = (
             across_a2_times_sin_swing_a2_by_divisor_a2_left_right + along_a2_times_cos_swing_a2_by_divisor_a2
@@ -407,7 +427,7 @@ def unrolled(k: Constants) -> Unrolled:
             across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2_left_right
         )
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        if effective_a2 > link_length_5_times_shortest_link and product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
             part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
@@ -465,16 +485,20 @@ def unrolled(k: Constants) -> Unrolled:
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         divisor_a2_minus_link_length_4 = divisor_a2 - link_length_4
         divisor_a2_plus_link_length_4 = divisor_a2 + link_length_4
-        # zero where it is stretched or folded
-        below_a2 = (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
-        # zero where it is the other
-        above_a2 = (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (
+            (divisor_a2_minus_link_length_4 + link_length_5)*(divisor_a2_plus_link_length_4 + link_length_5)
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (
+            (link_length_5 - divisor_a2_minus_link_length_4)*(divisor_a2_plus_link_length_4 - link_length_5)
+        )
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
-        product_a2 = above_a2*below_a2
-        sin_swing_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         across_a2_times_sin_swing_a2_by_divisor_a2 = across_a2*sin_swing_a2/divisor_a2
         cos_a2_right_left = across_a2_times_sin_swing_a2_by_divisor_a2 + along_a2_times_cos_swing_a2_by_divisor_a2
         along_a2_times_sin_swing_a2_by_divisor_a2 = along_a2*sin_swing_a2/divisor_a2
@@ -484,7 +508,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_a2_right_right = along_a2_times_cos_swing_a2_by_divisor_a2 - across_a2_times_sin_swing_a2_by_divisor_a2
         sin_a2_right_right = across_a2_times_cos_swing_a2_by_divisor_a2 + along_a2_times_sin_swing_a2_by_divisor_a2
         # arms_aligned: the other assembly mode, or too near to losing the plate
-        if effective_a2 > link_length_5_times_shortest_link and product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
+        if effective_a2 > link_length_5_times_shortest_link and sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2:
             minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
             minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
             part_of_centre_1_x = minus_pivot_upper_x*swap_xy - minus_pivot_upper_y*swap_xy
@@ -569,18 +593,22 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a1 = effective_a1 if effective_a1 > link_length_1_times_shortest_link else 1.0
         swing_scale_a1 = divisor_a1*link_length_1_times_2  # a1: law of cosines in the rod upper equation
-        # zero where it is stretched or folded
-        below_a1 = (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
-        # zero where it is the other
-        above_a1 = (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
-        product_a1 = above_a1*below_a1
+        # 1 - cosine, times the scale
+        one_less_cos_a1 = (
+            (divisor_a1 + link_length_1_minus_link_length_2)*(divisor_a1 + link_length_1_plus_link_length_2)
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a1 = (
+            (link_length_1_plus_link_length_2 - divisor_a1)*(divisor_a1 - link_length_1_minus_link_length_2)
+        )
+        sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
-        if not (product_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
+        if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return None
-        both_a1 = above_a1 + below_a1  # twice the scale, with the rounding of its parts
-        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
-        cos_swing_a1 = (above_a1 - below_a1)/sum_a1
-        sin_swing_a1 = -2.0*(sqrt(product_a1) if product_a1 > 0.0 else 0.0)*sigma_t/sum_a1
+        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/divisor_of_cos_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
         span_rear_x = (
@@ -613,22 +641,26 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a2 = effective_a2 if effective_a2 > link_length_5_times_shortest_link else 1.0
         swing_scale_a2 = divisor_a2*link_length_5_times_2  # a2: law of cosines in the rod rear equation
-        # zero where it is stretched or folded
-        below_a2 = (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 - link_length_4_minus_link_length_5)
-        # zero where it is the other
-        above_a2 = (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 + link_length_4_minus_link_length_5)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (
+            (divisor_a2 + link_length_4_plus_link_length_5)*(divisor_a2 - link_length_4_minus_link_length_5)
+        )
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (
+            (link_length_4_plus_link_length_5 - divisor_a2)*(divisor_a2 + link_length_4_minus_link_length_5)
+        )
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
+        if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return None
         minus_pivot_upper_x = link_length_1*sin_a1  # rod upper
         minus_pivot_upper_y = link_length_1*cos_a1  # rod upper
         rod_1_x = x - (minus_pivot_upper_x*swap_xy - minus_pivot_upper_x - minus_pivot_upper_y*swap_xy)
         rod_1_y = y - (minus_pivot_upper_y*swap_xy - minus_pivot_upper_y - minus_pivot_upper_x*swap_xy)
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_swing_a2 = (above_a2 - below_a2)/sum_a2
-        sin_swing_a2 = -2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_w/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/divisor_of_cos_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_x = (

@@ -76,14 +76,15 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # zero where it is stretched or folded
-        below_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
-        above_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)  # zero where it is the other
-        product_q3 = above_q3*below_q3
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
-        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
+        # 1 - cosine, times the scale
+        one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
@@ -133,7 +134,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_front_up - open_a3 < 179.999999999:
             axis_a3_front_up = nearest_period(axis_a3_front_up, open_a3)
         # limits of A2, limits of A3
-        if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and product_q3 >= -swing_scale_q3_2_squared_times_rounding:
+        if axis_a1_front >= lowest_a1 and axis_a1_front <= highest_a1 and sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding:
             refusal_front_down = (
                 0.0
                 if (axis_a2_front_down >= lowest_a2) and (axis_a3_front_down >= lowest_a3) and (
@@ -155,14 +156,15 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # zero where it is stretched or folded
-        below_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
-        above_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)  # zero where it is the other
-        product_q3 = above_q3*below_q3
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
-        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
+        # 1 - cosine, times the scale
+        one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
@@ -192,7 +194,7 @@ def unrolled(k: Constants) -> Unrolled:
         if not -180.000000001 <= axis_a3_back_up - open_a3 < 179.999999999:
             axis_a3_back_up = nearest_period(axis_a3_back_up, open_a3)
         # limits of A2, limits of A3
-        if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and product_q3 >= -swing_scale_q3_2_squared_times_rounding:
+        if axis_a1_back >= lowest_a1 and axis_a1_back <= highest_a1 and sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding:
             refusal_back_down = (
                 0.0
                 if (axis_a2_back_down >= lowest_a2) and (axis_a3_back_down >= lowest_a3) and (
@@ -243,11 +245,12 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # zero where it is stretched or folded
-        below_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
-        above_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)  # zero where it is the other
-        product_q3 = above_q3*below_q3
-        refusal_front = 0.0 if product_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
+        # 1 - cosine, times the scale
+        one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        refusal_front = 0.0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
             d3_times_y = d3*y
@@ -266,10 +269,10 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*RADIAN
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
-        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -284,16 +287,17 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
         a2_minus_reach = a2 - reach
         a2_plus_reach = a2 + reach
-        # zero where it is stretched or folded
-        below_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
-        above_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)  # zero where it is the other
-        product_q3 = above_q3*below_q3
-        refusal_back = 0.0 if product_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
+        # 1 - cosine, times the scale
+        one_less_cos_q3 = (a2_minus_reach + effective_q3_2)*(a2_plus_reach + effective_q3_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
+        refusal_back = 0.0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sin_swing_q3 = 2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)/sum_q3
-        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -360,12 +364,13 @@ def unrolled(k: Constants) -> Unrolled:
         wrist_y_from_q1 = z - d1  # what the unknown links must span
         wrist_x_from_q1 = ahead_q1_before_q1_for_q3 - a1  # what the unknown links must span
         reach = sqrt(wrist_x_from_q1*wrist_x_from_q1 + wrist_y_from_q1*wrist_y_from_q1)
-        # zero where it is stretched or folded
-        below_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
-        above_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)  # zero where it is the other
-        product_q3 = above_q3*below_q3
+        # 1 - cosine, times the scale
+        one_less_cos_q3 = (a2_plus_effective_q3_2 + reach)*(a2_plus_effective_q3_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3 = (reach - a2_minus_effective_q3_2)*(a2_minus_effective_q3_2 + reach)
+        sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         # q3: out of reach
-        if not (product_q3 >= -swing_scale_q3_2_squared_times_rounding):
+        if not (sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding):
             return None
         # its reference where it is free
         if distance_q1 > machine_scale_times_free_angle:
@@ -376,10 +381,10 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        both_q3 = above_q3 + below_q3  # twice the scale, with the rounding of its parts
-        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
-        sin_swing_q3 = -2.0*(sqrt(product_q3) if product_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
-        cos_swing_q3 = (above_q3 - below_q3)/sum_q3
+        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
+        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
         if reach > machine_scale_times_free_angle:
             angle_q2 = (
                 arctan2(-effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)

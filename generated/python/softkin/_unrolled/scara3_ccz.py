@@ -52,22 +52,22 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # zero where it is stretched or folded
-        below_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
-        # zero where it is the other
-        above_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -scale_a2_squared_times_rounding):
+        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
             return 2*(3.0,)
         axis_a3 = offset_a3 + z
         # limits of A3
         if not (axis_a3 >= lowest_a3 and axis_a3 <= highest_a3):
             return 2*(3.0,)
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (above_a2 - below_a2)/sum_a2
-        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2 + 0.0, link_length_1 + link_length_2*cos_a2 + 0.0)
             angle_of_x = arctan2(y + 0.0, x + 0.0)
@@ -119,18 +119,18 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(x*x + y*y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # zero where it is stretched or folded
-        below_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
-        # zero where it is the other
-        above_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -scale_a2_squared_times_rounding):
+        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
             return 2*(None,)
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (above_a2 - below_a2)/sum_a2
-        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
             angle_of_x = arctan2(y, x)
@@ -153,18 +153,18 @@ def unrolled(k: Constants) -> Unrolled:
         (sigma_elbow,) = signs
         ref_a1, _, _ = 3*(0.0,) if reference is None else reference
         reach = sqrt(x*x + y*y)
-        # zero where it is stretched or folded
-        below_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
-        # zero where it is the other
-        above_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        product_a2 = above_a2*below_a2
+        # 1 - cosine, times the scale
+        one_less_cos_a2 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a2 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
-        if not (product_a2 >= -scale_a2_squared_times_rounding):
+        if not (sine_square_a2 >= -scale_a2_squared_times_rounding):
             return None
-        both_a2 = above_a2 + below_a2  # twice the scale, with the rounding of its parts
-        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
-        cos_a2 = (above_a2 - below_a2)/sum_a2
-        sin_a2 = 2.0*(sqrt(product_a2) if product_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
+        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
+        cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2, link_length_1 + link_length_2*cos_a2)
         else:

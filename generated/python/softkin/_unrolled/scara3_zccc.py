@@ -69,22 +69,22 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # zero where it is stretched or folded
-        below_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
-        # zero where it is the other
-        above_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (product_a3 >= -scale_a3_squared_times_rounding):
+        if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
             return 2*(3.0,)
         axis_a1 = offset_a1 + z
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3.0,)
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_a3 = (above_a3 - below_a3)/sum_a3
-        sin_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3 + 0.0, link_length_1 + link_length_2*cos_a3 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
@@ -158,19 +158,19 @@ def unrolled(k: Constants) -> Unrolled:
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
         link_length_1_minus_reach = link_length_1 - reach
         link_length_1_plus_reach = link_length_1 + reach
-        # zero where it is stretched or folded
-        below_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
-        # zero where it is the other
-        above_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = (link_length_1_minus_reach + link_length_2)*(link_length_1_plus_reach + link_length_2)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (link_length_2 - link_length_1_minus_reach)*(link_length_1_plus_reach - link_length_2)
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (product_a3 >= -scale_a3_squared_times_rounding):
+        if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
             return 2*(None,)
         axis_a1 = offset_a1 + z
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_a3 = (above_a3 - below_a3)/sum_a3
-        sin_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -207,18 +207,18 @@ def unrolled(k: Constants) -> Unrolled:
         sin_heading = heading_across/heading_divisor
         wrist_y = y - link_length_3*sin_heading  # what the unknown links must span
         reach = sqrt(wrist_x*wrist_x + wrist_y*wrist_y)
-        # zero where it is stretched or folded
-        below_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
-        # zero where it is the other
-        above_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
-        product_a3 = above_a3*below_a3
+        # 1 - cosine, times the scale
+        one_less_cos_a3 = (link_length_1_plus_link_length_2 + reach)*(link_length_1_plus_link_length_2 - reach)
+        # 1 + cosine, times the scale
+        one_plus_cos_a3 = (reach - link_length_1_minus_link_length_2)*(link_length_1_minus_link_length_2 + reach)
+        sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
-        if not (product_a3 >= -scale_a3_squared_times_rounding):
+        if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
             return None
-        both_a3 = above_a3 + below_a3  # twice the scale, with the rounding of its parts
-        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
-        cos_a3 = (above_a3 - below_a3)/sum_a3
-        sin_a3 = 2.0*(sqrt(product_a3) if product_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
+        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
         if reach > machine_scale_times_free_angle:
             angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
         else:
