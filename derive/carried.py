@@ -77,8 +77,8 @@ def _compatible(mechanism: Mechanism) -> Program:
     across = [s - a * _ALONG for s, a in zip(parts.flange, FLANGE_AXIS, strict=True)]
     unmet = [s for k, s in enumerate(parts.tool) if k not in _MET[mechanism.task.turning]]
     lengths = [p.symbol for p in mechanism.parameters if p.unit == "u"]
-    unnoticed = HELD * sp.Add(*map(sp.Abs, lengths))
-    body: list[Statement] = []
+    unnoticed = real("unnoticed_shift")
+    body: list[Statement] = [Let(unnoticed, HELD * sp.Add(*map(sp.Abs, lengths)), "as much may turn with the flange")]
     if any(parts.flange):
         body += [*finite(FLANGE_AXIS), *_along(parts), Let(real("flange_offset"), _size(across), _ACROSS)]
         body.append(Require(sp.Le(real("flange_offset"), unnoticed), Status.INVALID_COUPLING))

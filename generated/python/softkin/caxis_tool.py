@@ -58,6 +58,7 @@ class Constants(NamedTuple):
     single_c: float
     mid_c: float
     machine_scale: float
+    unnoticed_shift: float
     unmet_offset: float
 
 
@@ -170,12 +171,13 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         )
         mid_c = 0.5*effective_lower_c + 0.5*effective_upper_c
         machine_scale = 1.0  # a length of the machine
+        unnoticed_shift = 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)  # as much may turn with the flange
         unmet_offset = sqrt(tool_x*tool_x + tool_y*tool_y)  # turns in a way that nothing commands
         return Constants(
             tool_x=tool_x, tool_y=tool_y, tool_z=tool_z, offset_c=offset_c, check_limits=check_limits,
             lower_c=effective_lower_c, upper_c=effective_upper_c, unlimited_c=unlimited_c, lowest_c=lowest_c,
             highest_c=highest_c, single_c=single_c, mid_c=mid_c, machine_scale=machine_scale,
-            unmet_offset=unmet_offset,
+            unnoticed_shift=unnoticed_shift, unmet_offset=unmet_offset,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -286,10 +288,9 @@ class CAxisTool(OrientationKinematics, TwistChoice):
         """Whether a flange that turns can carry this."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         k = self._constants
-        tool_x = k.tool_x
-        tool_y = k.tool_y
         tool_z = k.tool_z
         unmet_offset = k.unmet_offset
+        unnoticed_shift = k.unnoticed_shift
         # numbers of reasonable size
         if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
@@ -300,10 +301,7 @@ class CAxisTool(OrientationKinematics, TwistChoice):
             + flange_along*flange_along*flange_axis_x*flange_axis_x
             + flange_along*flange_along*flange_axis_y*flange_axis_y
         )
-        if not (
-            flange_offset <= 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)
-            and unmet_offset <= 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)
-        ):
+        if not (flange_offset <= unnoticed_shift and unmet_offset <= unnoticed_shift):
             return Status.INVALID_COUPLING
         return Status.OK
 

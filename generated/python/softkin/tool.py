@@ -47,6 +47,7 @@ class Constants(NamedTuple):
     tool_z: float
     check_limits: float
     machine_scale: float
+    unnoticed_shift: float
 
 
 class Tool(OrientationKinematics):
@@ -111,8 +112,10 @@ class Tool(OrientationKinematics):
         if not (tool_z >= -1e9 and tool_z <= 1e9):
             raise self._refusal("tool_z: Flange to the tool, along Z", tool_z=tool_z)
         machine_scale = 1.0  # a length of the machine
+        unnoticed_shift = 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)  # as much may turn with the flange
         return Constants(
             tool_x=tool_x, tool_y=tool_y, tool_z=tool_z, check_limits=check_limits, machine_scale=machine_scale,
+            unnoticed_shift=unnoticed_shift,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -156,6 +159,7 @@ class Tool(OrientationKinematics):
         tool_x = k.tool_x
         tool_y = k.tool_y
         tool_z = k.tool_z
+        unnoticed_shift = k.unnoticed_shift
         # numbers of reasonable size
         if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
             return Status.BAD_INPUT
@@ -167,7 +171,7 @@ class Tool(OrientationKinematics):
             + (tool_y - flange_along*flange_axis_y)*(tool_y - flange_along*flange_axis_y)
             + (tool_z - flange_along*flange_axis_z)*(tool_z - flange_along*flange_axis_z)
         )
-        if not (flange_offset <= 1e-9*abs(tool_x) + 1e-9*abs(tool_y) + 1e-9*abs(tool_z)):
+        if not (flange_offset <= unnoticed_shift):
             return Status.INVALID_COUPLING
         return Status.OK
 

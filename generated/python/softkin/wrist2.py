@@ -70,6 +70,7 @@ class Constants(NamedTuple):
     single_b: float
     mid_b: float
     machine_scale: float
+    unnoticed_shift: float
     wrist_offset: float
     unmet_offset: float
 
@@ -255,6 +256,11 @@ class Wrist2(OrientationKinematics):
         )
         mid_b = 0.5*effective_lower_b + 0.5*effective_upper_b
         machine_scale = 1.0  # a length of the machine
+        # as much may turn with the flange
+        unnoticed_shift = (
+            1e-9*abs(roll_axis_offset_x) + 1e-9*abs(roll_axis_offset_y) + 1e-9*abs(roll_axis_offset_z)
+            + 1e-9*abs(tool_length)
+        )
         # between the axes: only a flange that keeps its orientation tells where that is
         wrist_offset = abs(roll_axis_offset_x)
         unmet_offset = abs(roll_axis_offset_y)  # turns in a way that nothing commands
@@ -264,8 +270,8 @@ class Wrist2(OrientationKinematics):
             check_limits=check_limits, lower_a=effective_lower_a, upper_a=effective_upper_a, unlimited_a=unlimited_a,
             lowest_a=lowest_a, highest_a=highest_a, single_a=single_a, mid_a=mid_a, lower_b=effective_lower_b,
             upper_b=effective_upper_b, unlimited_b=unlimited_b, lowest_b=lowest_b, highest_b=highest_b,
-            single_b=single_b, mid_b=mid_b, machine_scale=machine_scale, wrist_offset=wrist_offset,
-            unmet_offset=unmet_offset,
+            single_b=single_b, mid_b=mid_b, machine_scale=machine_scale, unnoticed_shift=unnoticed_shift,
+            wrist_offset=wrist_offset, unmet_offset=unmet_offset,
         )
 
     def _forward(self, axes: Reals) -> Pose | Status:
@@ -465,11 +471,9 @@ class Wrist2(OrientationKinematics):
         """Whether a flange that turns can carry this."""
         flange_axis_x, flange_axis_y, flange_axis_z = flange_axis
         k = self._constants
-        roll_axis_offset_x = k.roll_axis_offset_x
-        roll_axis_offset_y = k.roll_axis_offset_y
         roll_axis_offset_z = k.roll_axis_offset_z
-        tool_length = k.tool_length
         unmet_offset = k.unmet_offset
+        unnoticed_shift = k.unnoticed_shift
         wrist_offset = k.wrist_offset
         # numbers of reasonable size
         if not (-1e9 <= flange_axis_x <= 1e9 and -1e9 <= flange_axis_y <= 1e9 and -1e9 <= flange_axis_z <= 1e9):
@@ -482,15 +486,7 @@ class Wrist2(OrientationKinematics):
             + flange_along*flange_along*flange_axis_y*flange_axis_y
         )
         if not (
-            flange_offset <= 1e-9*abs(
-                roll_axis_offset_x
-            ) + 1e-9*abs(roll_axis_offset_y) + 1e-9*abs(roll_axis_offset_z) + 1e-9*abs(tool_length)
-            and wrist_offset <= 1e-9*abs(
-                roll_axis_offset_x
-            ) + 1e-9*abs(roll_axis_offset_y) + 1e-9*abs(roll_axis_offset_z) + 1e-9*abs(tool_length)
-            and unmet_offset <= 1e-9*abs(
-                roll_axis_offset_x
-            ) + 1e-9*abs(roll_axis_offset_y) + 1e-9*abs(roll_axis_offset_z) + 1e-9*abs(tool_length)
+            flange_offset <= unnoticed_shift and wrist_offset <= unnoticed_shift and unmet_offset <= unnoticed_shift
         ):
             return Status.INVALID_COUPLING
         return Status.OK
