@@ -31,8 +31,15 @@ from derive.passes import assemble, hoist
 from derive.platform import platform_checks, platform_singularity
 from derive.pose import pose_of
 from derive.program import DEGREE, Let, Output, Program, Require, Statement, Status, real, shared
-from derive.search import RANK
-from derive.searching import DETERMINANT, branch_statements, determinant_margin, margin_statements, solve_both
+from derive.searching import (
+    DETERMINANT,
+    branch_statements,
+    determinant_margin,
+    from_joints,
+    margin_statements,
+    search_given,
+    solve_both,
+)
 from derive.shared_names import refuse_shared_names
 from derive.solve import Unsolved
 from derive.splits import is_spatial
@@ -113,8 +120,9 @@ def _searching(mechanism: Mechanism) -> Kinematics:
     programs = [
         forward_program(mechanism, replace(both.forward, statements=statements), margins),
         orientation_program(both.forward),
-        inverse_program("branch", mechanism, both.closed, branch_statements(both, is_ranked=False)),
-        inverse_program("ranked", mechanism, both.closed, branch_statements(both, is_ranked=True)),
+        inverse_program("branch", mechanism, both.closed, branch_statements(both)),
+        search_given(both),
+        from_joints(mechanism),
         _limits_program(mechanism),
         assemble("singularity", (*both.forward.statements, *determinant, margin), [Output(DETERMINANT.name, margin.name)]),
         jacobian_program(mechanism, both.forward),
@@ -142,7 +150,8 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
     setup = setup_program(mechanism, parameters, hoisted)
     settable = setup_program(mechanism, parameters, hoisted, has_settings=True) if mechanism.period_joints else None
     finished = {program.name: program for program in lowered}
-    for program in lowered:
+    called = {program.name for program in shared(lowered)}
+    for program in (p for p in lowered if p.name not in called):  # a caller gives what those read
         _check_inputs(mechanism, program, {o.name for o in setup.outputs})
     return Kinematics(
         mechanism=mechanism,
@@ -164,7 +173,8 @@ def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[
         reads_rotation=mechanism.task.turning is not Turning.NONE,
         setup_less_windows=settable,
         forward_from=finished.get("forward_from"),
-        ranked=finished.get("ranked"),
+        search_given=finished.get("search_given"),
+        from_joints=finished.get("from_joints"),
         twist=finished.get("twist"),
         compatible=finished.get("compatible"),
         carried=finished.get("carried"),
@@ -176,8 +186,9 @@ def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -
     """A free name that is nobody's input is a mistake of the derivation: find it here, not in a generated file."""
     allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
     allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
+    allowed |= {j.symbol.name for j in mechanism.joints} if program.name == "from_joints" else set()
     allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
-    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS, RANK)}
+    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}
     strangers = [s.name for s in program.inputs if s.name not in allowed]
     if strangers:
         raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")

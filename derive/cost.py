@@ -14,7 +14,22 @@ import sympy as sp
 from derive.diagnosis import Reasons, reasons_of, reasons_of_rotation
 from derive.kinematics import Kinematics
 from derive.orthonormal import rotation_program
-from derive.program import Atan2, Call, Iterate, Let, NearestOnArc, NearestPeriod, Program, Require, Root, Solve, Statement
+from derive.program import (
+    FINISHED,
+    TRIALS,
+    Atan2,
+    Call,
+    FindRoot,
+    Iterate,
+    Let,
+    NearestOnArc,
+    NearestPeriod,
+    Program,
+    Require,
+    Root,
+    Solve,
+    Statement,
+)
 
 _BINARY_FRACTIONS = (2, 4, 8, 16)
 """The denominators that are written as a decimal factor."""
@@ -138,6 +153,8 @@ def _statement(statement: Statement) -> Cost:
         return entries + solve_cost(statement.size, statement.columns)
     if isinstance(statement, Call):
         return _total(expression_cost(value) for _, value in statement.given) + cost_of(statement.program)
+    if isinstance(statement, FindRoot):
+        return cost_of(statement.trial) * TRIALS + cost_of(statement.finish) * FINISHED
     one_pass = _total(map(_statement, statement.step)) + _total(map(expression_cost, (statement.done, *statement.following)))
     return _total(map(expression_cost, statement.start)) + one_pass * statement.limit
 
@@ -164,6 +181,8 @@ def _bounds(program: Program) -> Iterator[Bound]:
     for statement in program.body:
         if isinstance(statement, Iterate):
             yield Bound(program.name, statement.note, statement.limit)
+        elif isinstance(statement, FindRoot):
+            yield Bound(program.name, statement.note, TRIALS)
         elif isinstance(statement, Call):
             yield from _bounds(statement.program)
 

@@ -18,7 +18,7 @@ from derive.kinematics import Kinematics
 from derive.legs import SCALE
 from derive.orthonormal import rotation_program
 from derive.other_turns import OtherTurn, other_turns
-from derive.program import DEGREE, Atan2, Call, Iterate, Let, Require, Root, Select, Status
+from derive.program import DEGREE, Atan2, Iterate, Let, Require, Root, Select, Status, shared
 
 NOT_INITIALIZED = "not initialized"
 NO_MEANING = "byte {byte} of the configuration means nothing"
@@ -169,7 +169,7 @@ def rotation_texts() -> tuple[str, ...]:
 def reasons_of(kinematics: Kinematics) -> Reasons:
     """What the reasons of a mechanism need to know."""
     programs = (kinematics.setup, kinematics.branch, kinematics.limits)
-    if any(isinstance(s, Call) for p in programs for s in p.body):
+    if any(p.requires() for p in shared(programs)):
         raise TypeError(f"{kinematics.mechanism.name}: the inverse calls a program that gives no reasons")
     limits = {p.name.replace("lower_", "lowest_", 1): p.unit for p in kinematics.parameters if p.name.startswith("lower_")}
     limits |= {p.name.replace("upper_", "highest_", 1): p.unit for p in kinematics.parameters if p.name.startswith("upper_")}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from derive.algebra import polynomial
+from derive.algebra import cosine, polynomial, sine
 from derive.closure import (
     HEADING,
     OFFSET,
@@ -32,7 +32,7 @@ from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, Joint, Mechanis
 from derive.parameters import SCALE
 from derive.passes import assemble
 from derive.problem import Problem
-from derive.program import FREE_ANGLE, PLANE, Let, Output, Program, Require, Root, Select, Statement, Status, real
+from derive.program import FREE_ANGLE, PLANE, Atan2, Let, Output, Program, Require, Root, Select, Statement, Status, real
 from derive.shorter import shorter
 from derive.solve import Derivation, solve
 
@@ -146,7 +146,11 @@ def inverse_program(
         in_plane = (Require(sp.Le(distance, PLANE * SCALE), Status.UNREACHABLE, "z: a planar machine has none"),)
     resolved = {s.name for s in statements if isinstance(s, Let)}
     axes = tuple(
-        let for j in mechanism.joints if j not in inverse.frozen for let in axis_lets(j) if let.name not in resolved
+        of_angle(let, j, resolved)
+        for j in mechanism.joints
+        if j not in inverse.frozen
+        for let in axis_lets(j)
+        if let.name not in resolved
     )
     outputs = [Output(j.axis.name, j.axis) for j in mechanism.joints]
     body = (*inverse.naming, *in_plane, *statements, *last, *axes)
@@ -155,3 +159,10 @@ def inverse_program(
     checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))
     return shorter(assemble(name, (*checks, *draft.body), draft.outputs))
 
+
+def of_angle(let: Let, joint: Joint, resolved: set[sp.Symbol]) -> Let:
+    """An axis value of the joint's angle, where that is known by itself."""
+    if joint.symbol not in resolved or joint.axis in resolved:
+        return let
+    direction = Atan2(sine(joint.symbol), cosine(joint.symbol))
+    return Let(let.name, let.value.xreplace({direction: joint.symbol}), let.note)

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from derive.mechanism import Branch, Joint, Limited, Mechanism, Parameter
-from derive.program import Program, shared
+from derive.program import Call, Program, shared
 from derive.selftest_cases import SelfTest
 
 
@@ -85,8 +85,8 @@ class Kinematics:
                      None where forward kinematics does not iterate
     orientation      axis_* → r11…r33
     branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*; one branch, periods included, limits not
-    ranked           as branch, and `rank`: 0 for the solution nearest to the reference, 1 for the next; None where a branch of a
-                     pose has one solution at most
+    search_given     as branch → what the search of that branch is given; None where there is a closed form
+    from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None where no search gives the joints
     limits           axis_* → nothing; its conditions are the axis limits and the limits of coupled quantities
     singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size; also the length of a
                      margin that has one
@@ -128,7 +128,8 @@ class Kinematics:
     reads_rotation: bool
     setup_less_windows: Program | None = None
     forward_from: Program | None = None
-    ranked: Program | None = None
+    search_given: Program | None = None
+    from_joints: Program | None = None
     twist: Program | None = None
     compatible: Program | None = None
     carried: Program | None = None
@@ -141,6 +142,11 @@ class Kinematics:
     def shared(self) -> tuple[Program, ...]:
         """The programs that several of these call: one that is called comes before the one that calls it."""
         return shared(self.programs)
+
+    @property
+    def branch_calls(self) -> bool:
+        """Whether the inverse calls programs that others share."""
+        return any(isinstance(s, Call) for s in self.branch.body)
 
     @property
     def programs(self) -> tuple[Program, ...]:

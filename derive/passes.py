@@ -17,6 +17,7 @@ from derive.names import Names
 from derive.program import (
     DEGREE,
     Call,
+    FindRoot,
     Iterate,
     Let,
     Output,
@@ -143,7 +144,7 @@ def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Stat
                 provide(source)
 
     for s in body:
-        if isinstance(s, Require | Iterate | Call):
+        if isinstance(s, Require | Iterate | Call | FindRoot):
             provide(s)
     for value in wanted:
         need(symbols_of(value))
@@ -189,6 +190,8 @@ def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[
 
 def _calling(statement: Statement, programs: Mapping[str, Program]) -> Statement:
     """The statement; a call of the program as it is now."""
+    if isinstance(statement, FindRoot):
+        return replace(statement, trial=programs[statement.trial.name], finish=programs[statement.finish.name])
     return replace(statement, program=programs[statement.program.name]) if isinstance(statement, Call) else statement
 
 

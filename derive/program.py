@@ -60,18 +60,16 @@ SOLVABLE = sp.Float("1e30")
 """Linear equations are solved where all their numbers are at most this size, and the largest at least its reciprocal."""
 CONVERGED = sp.Float("1e-11")
 """An iteration has converged where what is left of a length is at most this share of the machine's scale."""
-SCAN_STEP = DEGREE / 2
-"""A search along a joint looks at trials this far apart."""
-SCAN_GROWTH = sp.Integer(8)
-"""Near the reference the steps of a search are smaller, and grow by this factor."""
-SCAN_ROOT = sp.Float("1e-14")
-"""A search has closed in on a root where the scaled residual is at most this."""
-LEAST_CROSSING, LARGEST_CROSSING = sp.Float("1e-13"), sp.Float("1e-6")
-"""How much a scaled residual changes over the first steps to both sides of a root: less is no crossing, more a jump."""
-REFINEMENTS = 100
-"""Trials that close in on one root of a search, at most."""
-SCAN_PASSES = 1800
-"""Trials of a search in all: the scan, and some thirty roots of other branches that are closed in on the way."""
+NEARLY = sp.Float("1e-6")
+"""A root of a search lies on a branch whose scaled margin it does not miss by more than this, the root of `BOUNDARY`."""
+TRIALS = 550
+"""Trials of a search for a root, at most."""
+FINISHED = 12
+"""Roots of a search that are looked at, at most."""
+MET = sp.Float("1e-10")
+"""A root of a search meets the pose: what is left is at most this share of the machine, and so many radians."""
+IMPROVEMENTS = 3
+"""Steps of Newton's method that improve a root of a search, at most."""
 TIE = sp.Float("1e-6")
 """An automatic choice takes a later branch only where its squared distance (degrees) is smaller by more than this."""
 TIE_SHARE = sp.Float("1e-6")
@@ -244,7 +242,35 @@ class Call:
         return tuple(s for s in self.program.inputs if s not in arguments)
 
 
-Statement = Let | Require | Solve | Iterate | Call
+@dataclass(frozen=True)
+class FindRoot:
+    """Bind `names` to 1 and the outputs of `finish` at the root of `trial` that fits and is nearest to `start` on the circle.
+
+    A trial is a function of `TRIED`, on the wanted side of a two-root step (`SIDE` +1) or the other (-1), with the partial step
+    of the number `FREED` given by `FREED_ANGLE` instead (-1: none). Its outputs are the value that must vanish, its slope, a
+    guard that is negative where there is no solution, its slope, then cosine and sine of the angle of every partial step.
+    `finish` has the same arguments; its first output is 1 where the root is wanted, else 0. See `roots` for how roots are
+    found. Where there is none, or `wanted` does not hold so that none is looked for, the names are bound to zeros.
+    """
+
+    trial: Program
+    finish: Program
+    start: sp.Expr
+    wanted: Boolean
+    names: tuple[sp.Symbol, ...]
+    arguments: tuple[sp.Symbol, ...]
+    """What both programs are given besides the place; all else that they read is a constant of the machine."""
+    note: str = ""
+
+    def given(self, program: Program) -> tuple[sp.Symbol, ...]:
+        """The arguments of one of the programs, in the order of its inputs."""
+        return tuple(s for s in program.inputs if s in self.arguments or s in PLACE)
+
+
+Statement = Let | Require | Solve | Iterate | Call | FindRoot
+TRIED, SIDE, FREED, FREED_ANGLE = (sp.Symbol(n, real=True) for n in ("tried", "side", "freed", "freed_angle"))
+PLACE = (TRIED, SIDE, FREED, FREED_ANGLE)
+"""Where a trial is made: see `FindRoot`."""
 
 
 @dataclass(frozen=True)
@@ -312,7 +338,7 @@ def binds(statement: Statement) -> tuple[sp.Symbol, ...]:
         return statement.names + (() if statement.determinant is None else (statement.determinant,))
     if isinstance(statement, Iterate):
         return (*statement.state, *(name for s in statement.step for name in binds(s)))
-    return statement.names if isinstance(statement, Call) else ()
+    return statement.names if isinstance(statement, Call | FindRoot) else ()
 
 
 def expressions(statement: Statement) -> Iterator[sp.Basic]:
@@ -325,6 +351,8 @@ def expressions(statement: Statement) -> Iterator[sp.Basic]:
         yield from (*statement.matrix, *statement.right)
     elif isinstance(statement, Call):
         yield from (value for _, value in statement.given)
+    elif isinstance(statement, FindRoot):
+        yield from (statement.start, statement.wanted)
     else:
         yield from statement.start
         for inner in statement.step:
@@ -337,14 +365,18 @@ def reads(statement: Statement) -> set[sp.Symbol]:
     found = {s for e in expressions(statement) for s in symbols_of(e)}
     if isinstance(statement, Call):
         return found | set(statement.constants)
+    if isinstance(statement, FindRoot):
+        return found | {s for p in (statement.trial, statement.finish) for s in p.inputs if s not in PLACE}
     return found - set(binds(statement)) if isinstance(statement, Iterate) else found
 
 
 def shared(programs: Iterable[Program]) -> tuple[Program, ...]:
     """The programs that these call, each once, and before those that call it."""
     found: dict[str, Program] = {}
-    for call in (s for program in programs for s in program.body if isinstance(s, Call)):
-        found |= {inner.name: inner for inner in (*shared([call.program]), call.program)}
+    for statement in (s for program in programs for s in program.body):
+        called = [statement.program] if isinstance(statement, Call) else []
+        called += [statement.trial, statement.finish] if isinstance(statement, FindRoot) else []
+        found |= {inner.name: inner for program in called for inner in (*shared([program]), program)}
     return tuple(found.values())
 
 
@@ -358,6 +390,8 @@ def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> S
         return replace(statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right)))
     if isinstance(statement, Call):
         return replace(statement, given=tuple((name, change(value)) for name, value in statement.given))
+    if isinstance(statement, FindRoot):
+        return replace(statement, start=change(statement.start), wanted=change(statement.wanted))
     return replace(
         statement,
         start=tuple(map(change, statement.start)),

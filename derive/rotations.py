@@ -24,6 +24,15 @@ _MOST_UNKNOWN = 2
 
 def rotations(problem: Problem) -> tuple[Equation, ...]:
     """What the commanded rotation says of the turns that are still unknown, the known ones at both ends taken away."""
+    return tuple(e for e in _entries(problem) if problem.unknowns_of(e.expression))
+
+
+def conditions(problem: Problem) -> tuple[Equation, ...]:
+    """The entries that no unknown turn moves: what must hold of the known turns alone."""
+    return tuple(e for e in _entries(problem) if not problem.unknowns_of(e.expression) and e.expression != 0)
+
+
+def _entries(problem: Problem) -> tuple[Equation, ...]:
     if not problem.turns or not any(_unknown(problem, t) for t in problem.turns):
         return ()
     turns = list(problem.turns)
@@ -80,9 +89,8 @@ def _entry_equations(
             if any(a in middle[i, j].free_symbols for a in problem.pending):
                 continue
             form = polynomial(middle[i, j], problem.units, problem.signs)
-            if problem.unknowns_of(form):
-                expression = reduce_units(form - entries[i, j], problem.units, problem.signs)
-                found.append(Equation(f"r{i + 1}{j + 1}", expression, _needed(lets, expression), is_length=False))
+            expression = reduce_units(form - entries[i, j], problem.units, problem.signs)
+            found.append(Equation(f"r{i + 1}{j + 1}", expression, _needed(lets, expression), is_length=False))
     return tuple(found)
 
 

@@ -13,9 +13,11 @@ from derive.program import (
     DEGREE,
     EDGE,
     PIVOT,
+    PLACE,
     SOLVABLE,
     Atan2,
     Call,
+    FindRoot,
     Iterate,
     Let,
     NearestOnArc,
@@ -28,6 +30,7 @@ from derive.program import (
     Statement,
     Status,
 )
+from derive.roots import At, nearest
 
 Array = NDArray[np.float64]
 _SHIFT = 180.0 + float(EDGE)
@@ -98,6 +101,8 @@ def _execute(statements: Iterable[Statement], known: dict[str, Array], status: N
             _solve(statement, known, status.shape)
         elif isinstance(statement, Call):
             _call(statement, known, status)
+        elif isinstance(statement, FindRoot):
+            _find(statement, known, status)
         else:
             _iterate(statement, known, status)
 
@@ -114,6 +119,28 @@ def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> N
     _execute(call.program.body, inner, status)
     outputs = {o.name: o.value for o in call.program.outputs}
     known.update({name.name: evaluate(outputs[name.name], inner) for name in call.names})
+
+
+def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]) -> None:
+    """Roots are looked for only where they are wanted, and where nothing has refused before."""
+    shape = status.shape
+    looked = np.broadcast_to(evaluate(search.wanted, known), shape) & (status == Status.OK)
+    rows = {k: np.broadcast_to(v, shape)[looked] for k, v in known.items()}
+
+    def at(program: Program, place: At) -> Array:
+        if not len(place.rows):
+            return np.zeros((0, len(program.outputs)))
+        there = {s.name: rows[s.name][place.rows] for s in program.inputs if s not in PLACE}
+        there |= {s.name: np.asarray(v, dtype=float) for s, v in zip(PLACE, place[1:], strict=True)}
+        outputs, _ = run(program, there)
+        return np.stack([np.broadcast_to(outputs[o.name], place.joint.shape) for o in program.outputs], axis=1)
+
+    start = np.broadcast_to(evaluate(search.start, known), shape)[looked]
+    found, values = nearest(lambda place: at(search.trial, place), lambda place: at(search.finish, place), start)
+    columns = np.concatenate([found[:, None], values], axis=1)
+    for name, column in zip(search.names, columns.T, strict=True):
+        known[name.name] = np.zeros(shape)
+        known[name.name][looked] = column
 
 
 def _iterate(loop: Iterate, known: dict[str, Array], status: NDArray[np.object_]) -> None:

@@ -19,17 +19,23 @@ from derive.algebra import cosine, sine
 from derive.branching import Assignment, assign, steps_and_rest, with_branch_signs
 from derive.closure import with_fixed_names
 from derive.differential import jacobian_entries
-from derive.edges import free
+from derive.edges import axis_lets, finite, free
 from derive.forward import Forward, derivation_at_axes, pose_at_axes
 from derive.frames import Chain
-from derive.inverse import Inverse, solve_at, solve_pose
-from derive.mechanism import Branch, DescriptionError, Mechanism
+from derive.inverse import Inverse, of_angle, solve_at, solve_pose
+from derive.mechanism import COORDINATE_NAMES, ROTATION_ENTRIES, Branch, DescriptionError, Mechanism, Role
 from derive.parameters import SCALE
 from derive.passes import assemble, renamed
 from derive.program import (
-    LIMIT,
+    FREED,
+    FREED_ANGLE,
+    SIDE,
+    TRIED,
+    Atan2,
+    Call,
     Let,
     Output,
+    Program,
     Require,
     Select,
     Solve,
@@ -41,7 +47,7 @@ from derive.program import (
 )
 from derive.run import run
 from derive.sampling import sample_axes, sample_machine
-from derive.search import ACCEPTED, RANK, TRIED, Trial, search_loop
+from derive.search import FOUND, GOAL, LOOKED_FOR, START, Trial, find_program, finish_program, trial_of, try_program, with_goal
 from derive.trigonometry import named_trigonometry
 
 SEARCHED = real("searched")
@@ -73,8 +79,9 @@ def solve_both(mechanism: Mechanism) -> Searching:
     trial = solve_at(mechanism, mechanism.search.joint)
     if (left := len(trial.derivation.residuals)) != 1:
         raise DescriptionError(f"with {mechanism.search.joint.name} known, {left} conditions are left, not one")
-    if any(isinstance(s, Require) for s in trial.derivation.statements):
-        raise DescriptionError(f"a trial along {mechanism.search.joint.name} must have a solution everywhere")
+    guards = [s.condition for s in trial.derivation.statements if isinstance(s, Require)]
+    if len(guards) > 1 or not all(isinstance(g, sp.Ge) for g in guards):
+        raise DescriptionError(f"a trial along {mechanism.search.joint.name} may be out of reach in one step only")
     found, asked = steps_and_rest(mechanism, trial, forward)
     return Searching(mechanism, forward, closed, assign(simple, closed, pose_at_axes(simple)), trial, found, asked)
 
@@ -96,69 +103,119 @@ def searched_flag(mechanism: Mechanism) -> Let:
     return Let(SEARCHED, Select(is_given, sp.Integer(1), sp.Integer(0)), f"whether to search along {mechanism.search.joint.name}")
 
 
-def branch_statements(both: Searching, *, is_ranked: bool) -> tuple[Statement, ...]:
-    """The inverse of one branch, up to the cosine and sine of every joint; ranked, of its root number `rank` from 0."""
+def branch_statements(both: Searching) -> tuple[Statement, ...]:
+    """The inverse of one branch, up to the axis values of every joint."""
     mechanism = both.mechanism
     assert mechanism.search is not None
     crossing = next(b for b in mechanism.branches if b.is_crossing)
-    sigma = real(f"sigma_{crossing.name}")
     is_searched = sp.Gt(SEARCHED, _HALF)
     solved = with_branch_signs(both.closed.derivation.statements, both.closed_branches)
     closed = _named_apart(_only(solved, is_searched), "closed")
-    trial = _trial(both)
-    loop = search_loop(trial, free(mechanism.search.joint), sigma, sp.Lt(SEARCHED, _HALF), is_ranked)
-    bound = set(binds(loop))
+    program = search_of(both)
+    arguments = _arguments(both, program)
+    names = (FOUND, *(real(f"found_{j.symbol.name}") for j in mechanism.joints))
     note = f"{mechanism.search.joint.name}: the search along it finds no root of this branch"
-    rest = tuple(s for s in trial.statements if not (isinstance(s, Let) and s.name in bound))
     return (
         searched_flag(mechanism),
         *closed,
-        Require(sp.Or(is_searched, sp.Gt(sigma, 0)), Status.UNREACHABLE, "without the offset there is no second crossing"),
-        *(_first_only(is_searched) if is_ranked else ()),
-        loop,
-        Require(sp.Or(sp.Lt(SEARCHED, _HALF), sp.Gt(ACCEPTED, _HALF)), Status.UNREACHABLE, note),
-        *rest,
+        Require(
+            sp.Or(is_searched, sp.Gt(real(f"sigma_{crossing.name}"), 0)),
+            Status.UNREACHABLE,
+            "without the offset there is no second crossing",
+        ),
+        Call(program, arguments, names, f"{mechanism.search.joint.name}: where it meets what is left of the closure"),
+        Require(sp.Or(sp.Lt(SEARCHED, _HALF), sp.Gt(FOUND, _HALF)), Status.UNREACHABLE, note),
         *_chosen(both, is_searched),
     )
 
 
-def _first_only(is_searched: sp.Basic) -> tuple[Require, ...]:
-    allowed = sp.Or(is_searched, sp.Lt(RANK, _HALF))
-    return (Require(allowed, Status.UNREACHABLE, "without the offset a branch has one solution"),)
+def _arguments(both: Searching, program: Program) -> tuple[tuple[sp.Symbol, sp.Expr], ...]:
+    """What the search of a branch is given."""
+    mechanism = both.mechanism
+    assert mechanism.search is not None
+    given: dict[sp.Symbol, sp.Expr] = {name: commanded for commanded, name in GOAL.items()}
+    given |= {START: free(mechanism.search.joint), LOOKED_FOR: SEARCHED}
+    given |= {_wanted(b): real(f"sigma_{b.name}") for b in mechanism.branches}
+    given |= {free(j): free(j) for j in mechanism.joints}
+    return tuple((name, given[name]) for name in program.inputs if name in given)
+
+
+def search_given(both: Searching) -> Program:
+    """The arguments of the search, for all roots of a pose."""
+    arguments = _arguments(both, search_of(both))
+    read = [*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES, *(j.reference for j in both.mechanism.joints)]
+    statements = (*finite(read), *both.closed.naming, searched_flag(both.mechanism))
+    return assemble("search_given", statements, [Output(name.name, value) for name, value in arguments])
+
+
+def from_joints(mechanism: Mechanism) -> Program:
+    """Axis values of joints that are known."""
+    known = {j.symbol for j in mechanism.joints}
+    lets = [of_angle(let, j, known) for j in mechanism.joints for let in axis_lets(j)]
+    return assemble("from_joints", lets, [Output(j.axis.name, j.axis) for j in mechanism.joints])
+
+
+def search_of(both: Searching) -> Program:
+    """The program that finds the root of a branch, with those that it shares."""
+    mechanism = both.mechanism
+    trial = _trial(both)
+    finish = finish_program(mechanism, trial, _margins_wanted(both), DETERMINANT)
+    arguments = (*GOAL.values(), *map(_wanted, mechanism.branches), *map(free, mechanism.joints))
+    return find_program(mechanism, try_program(trial), finish, arguments)
+
+
+def _wanted(branch: Branch) -> sp.Symbol:
+    """The sign of a branch, as an argument of the search."""
+    return real(f"wanted_{branch.name}")
+
+
+def _margins_wanted(both: Searching) -> list[sp.Expr]:
+    """The scaled margins of all branches at the joints, positive on the wanted one."""
+    mechanism = both.mechanism
+    functions = {f(j.symbol): g(j.symbol) for j in mechanism.joints for f, g in ((cosine, sp.cos), (sine, sp.sin))}
+    found = []
+    for b in (b for b in mechanism.branches if not b.is_crossing):
+        value = with_fixed_names(mechanism, b.indicator * b.signs[0])
+        found.append(_wanted(b) * value / (SCALE if _is_length(mechanism, b) else 1))
+    lets, values = named_trigonometry(mechanism, found)
+    known = {let.name: let.value for let in lets}
+    values = [v.xreplace(known).xreplace(functions) for v in values]
+    crossing = next(b for b in mechanism.branches if b.is_crossing)
+    slope = _orientation(both) * DETERMINANT * _determinant_scale(both)
+    signs = sp.Mul(*[_wanted(a.branch) for a in both.trial_branches])
+    return [*values, _wanted(crossing) * signs * slope]
+
+
+def _is_length(mechanism: Mechanism, branch: Branch) -> bool:
+    """Whether an indicator is a length: it vanishes with all lengths of the machine."""
+    gone = {p.symbol: 0 for p in mechanism.parameters if p.role is not Role.ANGLE}
+    return bool(sp.sympify(branch.indicator).subs(gone) == 0)
 
 
 def _chosen(both: Searching, is_searched: sp.Basic) -> Iterable[Let]:
+    """The angle of every joint, found or in closed form."""
     for joint in both.mechanism.joints:
-        for function in (cosine, sine):
-            name = function(joint.symbol).name
-            yield Let(real(name), Select(is_searched, real(f"{name}_tried"), real(f"{name}_closed")))
+        name = joint.symbol.name
+        closed = Atan2(real(f"{sine(joint.symbol).name}_closed"), real(f"{cosine(joint.symbol).name}_closed"))
+        yield Let(joint.symbol, Select(is_searched, real(f"found_{name}"), closed))
 
 
 def _trial(both: Searching) -> Trial:
-    """One trial of the wanted branch."""
+    """One trial, on the side of the wanted branch that is asked for."""
     mechanism = both.mechanism
     assert mechanism.search is not None
     joint = mechanism.search.joint.symbol
     own = (Let(cosine(joint), sp.cos(TRIED)), Let(sine(joint), sp.sin(TRIED)))
     solved = with_branch_signs(both.trial.derivation.statements, both.trial_branches)
-    lets, indicators = _indicators(both)
-    asked = [real(f"indicator_{b.name}") for b in both.asked]
-    solved_names = {s.name for s in (*own, *solved) if isinstance(s, Let)}
-    if strange := [let.name.name for let in lets if let.name not in solved_names]:
-        raise DescriptionError(f"a trial does not know {', '.join(strange)}")
+    signs = {a.sigma: _wanted(a.branch) * (SIDE if a.slope.reach is not None else 1) for a in both.trial_branches}
     residual = real("residual")
-    statements = _named_apart(
-        (
-            *own,
-            *both.trial.closure.lets,
-            *solved,
-            *(Let(n, v / SCALE) for n, v in zip(asked, indicators, strict=True)),
-            Let(residual, both.trial.derivation.residuals[0] / SCALE**2),
-        ),
-        "tried",
-    )
-    fits = [sp.Ge(real(f"sigma_{b.name}") * real(f"{n.name}_tried"), -LIMIT) for b, n in zip(both.asked, asked, strict=True)]
-    return Trial(statements, real("residual_tried"), sp.And(*fits))
+    left = Let(residual, both.trial.derivation.residuals[0])
+    statements = with_goal(_named_apart((*own, *both.trial.closure.lets, *solved, left), "tried"))
+    statements = tuple(rewritten(s, lambda e: e.xreplace(signs)) for s in statements)
+    angles = [m.angle for m in both.trial.derivation.measures]
+    joints = {j.symbol: j for j in mechanism.joints}
+    trial = trial_of(statements, real("residual_tried"), [(a, free(joints[a])) for a in angles])
+    return replace(trial, angles=tuple(real(f"{a.name}_tried") for a in angles))
 
 
 def _indicators(both: Searching) -> tuple[tuple[Let, ...], tuple[sp.Expr, ...]]:
@@ -225,10 +282,14 @@ def determinant_margin(both: Searching) -> tuple[tuple[Statement, ...], sp.Expr]
     width = len(mechanism.joints)
     scaled = [v / (SCALE if k // width < len(mechanism.task.position) else 1) for k, v in enumerate(entries)]
     system = Solve((), tuple(scaled), (), DETERMINANT, "of the Jacobian, its positions in lengths of the machine")
+    return (*lets, system), DETERMINANT * _determinant_scale(both)
+
+
+def _determinant_scale(both: Searching) -> sp.Expr:
     scale = sp.Mul(*[a.slope.scale for a in both.closed_branches])
     lengths = {s.name: s.value for s in both.closed.derivation.statements if isinstance(s, Let)}
     scale = scale.xreplace({name: lengths[name] for name in scale.free_symbols & lengths.keys()})
-    return (*lets, system), DETERMINANT * SCALE ** len(mechanism.task.position) / scale
+    return SCALE ** len(both.mechanism.task.position) / scale
 
 
 def _orientation(both: Searching) -> int:
@@ -261,11 +322,12 @@ def _measured_slope(both: Searching, samples: dict[str, NDArray[np.float64]]) ->
     values, _ = run(assemble("pose", derivation_at_axes(mechanism, both.trial, both.forward), outputs), samples)
     trial = _trial(both)
     program = assemble("trial", trial.statements, [Output("value", trial.value)])
-    known = {**samples, **values}
+    known = {**samples, **{GOAL[real(n)].name: v for n, v in values.items() if real(n) in GOAL}}
     for a in both.trial_branches:
-        known[f"sigma_{a.branch.name}"] = np.where(values[f"margin_{a.branch.name}"] >= 0, 1.0, -1.0)
+        known[_wanted(a.branch).name] = np.where(values[f"margin_{a.branch.name}"] >= 0, 1.0, -1.0)
     for j in mechanism.joints:
         known[free(j).name] = np.zeros(_SAMPLES)
+    known |= {SIDE.name: np.ones(_SAMPLES), FREED.name: -np.ones(_SAMPLES), FREED_ANGLE.name: np.zeros(_SAMPLES)}
     ends = []
     for shift in (1e-6, -1e-6):
         tried = np.radians(samples[joint.axis.name] - samples[joint.offset.name]) + shift

@@ -17,7 +17,7 @@ from derive.ledger import Ledger
 from derive.parallel import Sum, candidate_sums, resolve, substitute
 from derive.problem import Binding, Equation, Measure, Problem, Slope
 from derive.program import Statement
-from derive.rotations import rotations
+from derive.rotations import conditions, rotations
 from derive.subproblems.affine import affine
 from derive.subproblems.affine_pair import affine_pair
 from derive.subproblems.pair import pair
@@ -31,6 +31,9 @@ RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quad
 
 
 def _stated(problem: Problem) -> tuple[Equation, ...]:
+    """The equations, and what the rotation says; of one too many, the rotation is asked when the positions are met."""
+    if problem.is_overdetermined and problem.equations:
+        return problem.equations
     return problem.equations + rotations(problem)
 
 
@@ -52,7 +55,7 @@ class Derivation:
     rules: tuple[str, ...]
     sums: tuple[Sum, ...] = ()
     residuals: tuple[sp.Expr, ...] = ()
-    """What vanishes if the equations agree with each other: identically, where none was left over."""
+    """Of one equation too many: what vanishes if the equations agree with each other."""
     plain: tuple[Statement, ...] = ()
     """The statements without what keeps roots and free angles where later steps reach: what their names mean."""
 
@@ -67,7 +70,12 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
     ledger = Ledger()
     sums: tuple[Sum, ...] = ()
     rules: list[str] = []
+    left: list[sp.Expr] = []
     while problem.angles or problem.lengths or problem.pending:
+        if problem.is_overdetermined and not problem.equations and not left:
+            for condition in conditions(problem):
+                binding = ledger.commit(Binding("rotation", (), condition.lets, residual=condition.expression))
+                left += [binding.residual] if binding.residual is not None else []
         problem, binding, sums = _next(problem, sums, arguments)
         binding = ledger.commit(binding)
         rules.append(binding.rule)
@@ -76,9 +84,11 @@ def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve
             if angle not in problem.lengths:
                 ledger.append(resolve_angle(angle))
         problem = _without(problem, binding, ledger)
-    unfolded = beyond_folds(ledger.statements, ledger.slopes, ledger.measures, problem.scale)
-    statements = within_reach(unfolded, ledger.slopes, ledger.measures)
-    return Derivation(statements, ledger.slopes, ledger.measures, tuple(rules), sums, ledger.residuals, ledger.statements)
+    statements = ledger.statements
+    if not problem.is_overdetermined:
+        unfolded = beyond_folds(statements, ledger.slopes, ledger.measures, problem.scale)
+        statements = within_reach(unfolded, ledger.slopes, ledger.measures)
+    return Derivation(statements, ledger.slopes, ledger.measures, tuple(rules), sums, tuple(left), ledger.statements)
 
 
 def _next(
@@ -88,13 +98,12 @@ def _next(
         binding = resolve(problem, total) if total.replaced in problem.pending else None
         if binding is not None:
             return problem, binding, sums
-    tiers = TIERS[:-1] if problem.is_overdetermined else TIERS
-    found = _best(candidate for tier in tiers for candidate in [_candidates(problem, tier(problem))])
+    found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
     if found is not None and found.rule != "trigonometric":
         return problem, found, sums
     for total in candidate_sums(problem, arguments):
         trial = substitute(problem, total)
-        wanted = tiers if found is None else tiers[:1]  # half the digits of a cosine alone: rather both functions of a sum
+        wanted = TIERS if found is None else TIERS[:1]  # half the digits of a cosine alone: rather both functions of a sum
         better = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in wanted)
         if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
             return trial, better, (*sums, total)

@@ -24,6 +24,7 @@ from derive.passes import assemble, renamed
 from derive.program import (
     TURN_NOTE,
     Call,
+    FindRoot,
     Iterate,
     Let,
     NearestPeriod,
@@ -79,7 +80,7 @@ def without_words(name: str, signs: Sequence[Sign]) -> tuple[str, tuple[str, ...
 
 def is_straight(program: Program) -> bool:
     """Whether a program can be unrolled: one that iterates takes longer on some branches, and a shared one has its names."""
-    return not any(isinstance(s, Iterate | Call) for s in program.body)
+    return not any(isinstance(s, Iterate | Call | FindRoot) for s in program.body)
 
 
 def unroll(program: Program, signs: Sequence[Sign]) -> Program:
@@ -151,7 +152,7 @@ class _Unroller:
 
     def add(self, statement: Statement) -> None:
         """Bind what a statement binds, once for every assignment of its signs."""
-        if isinstance(statement, Iterate | Call):
+        if isinstance(statement, Iterate | Call | FindRoot):
             raise BrokenProgram("what iterates or is shared is not unrolled")
         support = self._union(reads(statement))
         variants = [(choice, self._at(statement, support, choice)) for choice in choices(len(support))]

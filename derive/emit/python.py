@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from textwrap import wrap
 
 from jinja2 import Environment
 
+from derive import roots
 from derive.diagnosis import NO_MEANING
 from derive.emit import python_entries as entries
 from derive.emit import python_setup as setup
 from derive.emit.language import GENERATED, environment
+from derive.emit.python_calls import every_root
 from derive.emit.python_diagnosis import diagnosis
 from derive.emit.python_layout import WIDTH, fold
 from derive.emit.python_methods import branch, carried, forwards, limits, methods, shared
-from derive.emit.python_printer import ARRAY_NAMES, array_helpers_in, literal, primitives_in
-from derive.emit.python_program import Method, array_body, functions, has_loop, scalar_body
+from derive.emit.python_printer import ARRAY_NAMES, ScalarPrinter, array_helpers_in, literal, primitives_in
+from derive.emit.python_program import Method, array_body, functions, has_loop, has_search, scalar_body, unpacked
 from derive.emit.python_rotation import rotation_functions
 from derive.emit.python_unrolled import array_lines, array_method, can_be_unrolled, has_folds, unrolled
 from derive.kinematics import Kinematics
@@ -23,6 +26,7 @@ from derive.parameters import chooses_by_lengths
 from derive.program import (
     EDGE,
     EXACT_ROTATION,
+    FINISHED,
     FREE_ANGLE,
     HELD,
     LARGEST,
@@ -32,6 +36,8 @@ from derive.program import (
     SINGULAR,
     SOLVABLE,
     TIE,
+    TRIALS,
+    FindRoot,
     Status,
 )
 
@@ -53,6 +59,8 @@ _FIXED = (
     "softkin/_offset.py",
     "softkin/_orientation.py",
     "softkin/_rotation.py",
+    "softkin/_root.py",
+    "softkin/_roots.py",
     "softkin/_scalar.py",
     "softkin/_search.py",
     "softkin/_solutions.py",
@@ -116,11 +124,20 @@ def _templates() -> Environment:
         "one_turn": literal(int(ONE_TURN)),
         "pivot": literal(float(PIVOT)),
         "singular": literal(float(SINGULAR)),
+        "roots": _after_docstring(Path(roots.__file__).read_text()),
+        "trials": TRIALS,
+        "finished": FINISHED,
         "solvable": literal(float(SOLVABLE)),
         "tie": literal(float(TIE)),
         "no_meaning": NO_MEANING,
     }
     return templates
+
+
+def _after_docstring(source: str) -> str:
+    """A module without its docstring and its first import."""
+    text = source.split("from __future__ import annotations", 1)[1].strip()
+    return text.replace("from typing import NamedTuple", "from typing import Any, NamedTuple")
 
 
 def _index(kin: Kinematics) -> dict[str, str]:
@@ -152,10 +169,12 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "core_types": sorted({"Image", "Pose", *_core(kin)}),
         "types": _types(kin, scalar),
         "primitives": primitives_in(line for body in (*bodies, setup.setup_body(kin)) for line in body),
+        "searches": any(map(has_search, kin.shared)),
         "is_unrolled": can_be_unrolled(kin),
         "chooses_by_lengths": chooses_by_lengths(kin.mechanism),
         "has_folds": has_folds(kin),
         "margins": tuple(m.name for m in kin.margins),
+        "every_root": _every_root(scalar),
         "methods": [{"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)],
     }
     array_methods = [{"head": _array_head(m), "summary": m.summary, "body": array_body(m)} for m in arrays]
@@ -169,6 +188,7 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         "array_programs": array_programs,
         "imports": _sorted({array_programs, *array_types, *helpers, *_array_functions(arrays)}),
         "methods": array_methods,
+        "searches": any(map(has_search, kin.shared)),
         "takes_signs": can_be_unrolled(kin) and kin.branches,
     }
     files = {
@@ -180,6 +200,15 @@ def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
         unrolled_text = templates.get_template("unrolled.py.j2").render(**names, unrolled=unrolled(kin))
         files |= {f"softkin/_unrolled/{names['module']}.py": unrolled_text}
     return files
+
+
+def _every_root(found: Sequence[Method]) -> list[str]:
+    """The body of the method that finds all roots of a search; empty where there is none."""
+    for method in (m for m in found if has_search(m.program)):
+        (search,) = method.program.body
+        assert isinstance(search, FindRoot)
+        return [*unpacked(method), *every_root(search, ScalarPrinter())]
+    return []
 
 
 def _array_programs(kin: Kinematics) -> str:
@@ -197,7 +226,7 @@ def _bases(kin: Kinematics) -> dict[str, str]:
     """The base classes by the module they are in: what the mechanism offers beyond the calls that all have."""
     found = {"_offset": "OffsetKinematics"} if kin.offset_branch is not None else {}
     found |= {"_orientation": "OrientationKinematics"} if kin.mechanism.is_orientation else {}
-    found |= {"_search": "SearchedInverse"} if kin.ranked is not None else {}
+    found |= {"_search": "SearchedInverse"} if kin.mechanism.search is not None else {}
     found |= {"_start": "IterativeForward"} if kin.forward_from is not None else {}
     found |= {"_twist": "TwistChoice"} if kin.chooses_twist else {}
     return found or {"_core": "Mechanism"}

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import sympy as sp
 
 from derive.diagnosis import Reasons, reasons_of
+from derive.emit.python_calls import FOUND
 from derive.emit.python_layout import fold
 from derive.emit.python_methods import branch, limits
 from derive.emit.python_printer import ScalarPrinter, primitives_in
 from derive.emit.python_program import Method, Refusals, conjunction, scalar_body
 from derive.kinematics import Kinematics
 from derive.other_turns import OtherTurn
-from derive.program import Iterate, Require, Status
+from derive.program import Call, Iterate, Require, Status
 
 _PRINTER = ScalarPrinter()
 
@@ -27,6 +28,7 @@ def diagnosis(kin: Kinematics) -> dict[str, object]:
     return {
         "names_turns": any("turn_inside" in line for body in bodies for line in body),
         "primitives": primitives_in(line for body in bodies for line in body if '"' not in line),
+        "calls": any(map(_calls, methods)),
         "functions": [{"head": _head(m), "summary": m.summary, "body": b} for m, b in zip(methods, bodies, strict=True)],
     }
 
@@ -34,7 +36,12 @@ def diagnosis(kin: Kinematics) -> dict[str, object]:
 def _head(method: Method) -> list[str]:
     arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
     result = f"{method.kind} | Diagnosis" if method.kind else "Diagnosis"
-    return fold(f"def {method.name}(constants: Constants{arguments}) -> {result}:", 0)
+    return fold(f"def {method.name}({'self: Any, ' if _calls(method) else ''}constants: Constants{arguments}) -> {result}:", 0)
+
+
+def _calls(method: Method) -> bool:
+    """Whether a program calls others, which are methods of the mechanism."""
+    return any(isinstance(s, Call) for s in method.program.body)
 
 
 def _body(method: Method, refusals: Explained) -> list[str]:
@@ -57,6 +64,10 @@ class Explained(Refusals):
     def of_loop(self, loop: Iterate) -> str:
         """A loop that was never left has a reason and no amount."""
         return self._refused(loop.otherwise, self.reasons.loop(loop))
+
+    def of_call(self) -> str:
+        """A shared program has no reason of its own."""
+        return f'return Diagnosis({FOUND}, "", 0.0)'
 
     def reads(self, require: Require) -> tuple[sp.Expr, ...]:
         """The amounts, and what other turns are compared with."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from derive.emit.python_calls import GIVEN
 from derive.emit.python_program import Argument, Method, Shape
 from derive.kinematics import Kinematics
@@ -17,7 +15,6 @@ IMAGE: tuple[Shape, ...] = (
     ("u_x", "u_y", "u_z"),
 )
 ROTATION_ARGUMENT = Argument("rotation", "Rotation", ROTATION)
-_RANK = Argument("number", "Reals", ("rank",))
 _AXES = tuple(Argument(name, "Vector", tuple(f"{name}_{c}" for c in "xyz")) for name in ("flange_axis", "base_axis"))
 
 
@@ -30,9 +27,10 @@ def methods(kin: Kinematics) -> list[Method]:
     margins = tuple(m.name for m in kin.margins)
     found = [
         *shared(kin),
+        *every_root(kin),
         *forwards(kin),
         Method("orientation", "The rotation of the frame.", kin.orientation, (axes,), "Rotation", ROTATION),
-        ranked(kin) or branch(kin),
+        branch(kin),
         limits(kin),
         Method("singularity", "The margins, each zero at its singularity.", kin.singularity, (axes,), "Reals", margins),
         Method("jacobian", "The Jacobian by rows, per radian.", kin.jacobian, (axes,), "Matrix", rows),
@@ -68,6 +66,19 @@ def shared(kin: Kinematics) -> list[Method]:
     return found
 
 
+def every_root(kin: Kinematics) -> list[Method]:
+    """What it takes to find all roots of a search: what it is given, and axes of the joints that it finds."""
+    if kin.search_given is None or kin.from_joints is None:
+        return []
+    pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
+    joints = Argument("joints", "Reals", tuple(j.symbol.name for j in kin.mechanism.joints))
+    given = tuple(o.name for o in kin.search_given.outputs)
+    return [
+        Method("search_given", "What the search is given.", kin.search_given, (*pose, *_choice(kin)), "Reals", given),
+        Method("from_joints", "The axes of joints.", kin.from_joints, (joints, *_choice(kin)[1:]), "Reals", _axes(kin).shape),
+    ]
+
+
 def forward(kin: Kinematics) -> Method:
     """Forward kinematics."""
     result = (POSITION, ROTATION, _measures(kin))
@@ -93,15 +104,6 @@ def branch(kin: Kinematics) -> Method:
     pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
     text = "The axes of one branch, periods included, limits not."
     return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape)
-
-
-def ranked(kin: Kinematics) -> Method | None:
-    """Inverse kinematics on one branch that may have several solutions."""
-    if kin.ranked is None:
-        return None
-    plain = branch(kin)
-    text = "The axes of one branch: of its solutions the one that has so many others nearer to the reference."
-    return replace(plain, name="ranked", summary=text, program=kin.ranked, arguments=(*plain.arguments, _RANK))
 
 
 def carried(kin: Kinematics) -> list[Method]:

@@ -19,7 +19,9 @@ from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, literal, spe
 from derive.program import (
     DEGREE,
     EDGE,
+    PLACE,
     Call,
+    FindRoot,
     Iterate,
     Let,
     NearestPeriod,
@@ -92,6 +94,10 @@ class Refusals:
         """Where a loop was never left."""
         return f"return {self.answer(loop.otherwise)}"
 
+    def of_call(self) -> str:
+        """Where a shared program has refused."""
+        return f"return {python_calls.FOUND}"
+
     def reads(self, require: Require) -> tuple[sp.Expr, ...]:
         """What a refusal computes: it must be bound whichever way the program went."""
         return ()
@@ -123,7 +129,9 @@ def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter
             lines += [*scalar_head(item, printer), *_step(item, printer)]
             lines += scalar_end(item, conjunction([item.done]), refusals.of_loop(item), printer)
         elif isinstance(item, Call):
-            lines += python_calls.scalar_lines(item, printer)
+            lines += python_calls.scalar_lines(item, printer, refusals.of_call())
+        elif isinstance(item, FindRoot):
+            lines += python_calls.scalar_search(item, printer)
         else:
             lines += _item_lines(item, refusals, printer)
     return lines
@@ -192,6 +200,8 @@ def array_statements(method: Method) -> list[str]:
             lines += [*array_head(item, _ARRAY), *_step(item, _ARRAY), *array_end(item, _ARRAY)]
         elif isinstance(item, Call):
             lines += python_calls.array_lines(item, _ARRAY)
+        elif isinstance(item, FindRoot):
+            lines += python_calls.array_search(item, _ARRAY)
         elif isinstance(item, Require):
             lines += _note(item.note)
             for condition in (r.condition for r in same):
@@ -222,6 +232,11 @@ def functions(programs: Sequence[Program]) -> list[str]:
     return sorted(found)
 
 
+def has_search(program: Program) -> bool:
+    """Whether a program searches for a root."""
+    return any(isinstance(s, FindRoot) for s in program.body)
+
+
 def has_loop(program: Program) -> bool:
     """Whether a program iterates."""
     return any(isinstance(s, Iterate) for s in program.body)
@@ -229,7 +244,7 @@ def has_loop(program: Program) -> bool:
 
 def has_system(program: Program) -> bool:
     """Whether a program solves linear equations."""
-    inner = (i for s in program.body if not isinstance(s, Call) for i in (s.step if isinstance(s, Iterate) else (s,)))
+    inner = (i for s in program.body if not isinstance(s, Call | FindRoot) for i in (s.step if isinstance(s, Iterate) else (s,)))
     return any(isinstance(s, Solve) for s in inner)
 
 
@@ -291,7 +306,9 @@ def unpacked(method: Method) -> list[str]:
 def _read(program: Program) -> set[str]:
     """What a program reads by itself: what those read that it calls is their affair."""
     values = [e for s in program.body for e in expressions(s)] + [o.value for o in program.outputs]
-    return {s.name for value in values for s in symbols_of(value)} - {s.name for s in program.bound()}
+    given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
+    found = {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
+    return found - {s.name for s in program.bound()}
 
 
 def _targets(shape: Shape, read: set[str]) -> str:

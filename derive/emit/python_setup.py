@@ -7,7 +7,7 @@ from derive.emit.python_printer import ScalarPrinter, literal, spelled
 from derive.emit.python_program import binding_lines, conjunction
 from derive.kinematics import Kinematics
 from derive.mechanism import Parameter, Role
-from derive.program import UNLIMITED, Call, Iterate, Require
+from derive.program import UNLIMITED, Call, FindRoot, Iterate, Require
 
 _PRINTER = ScalarPrinter()
 _TYPES = {Role.FLAG: "bool", Role.SIGN: "int"}
@@ -34,7 +34,7 @@ def setup_body(kin: Kinematics) -> list[str]:
     inputs = [s.name for s in kin.setup.inputs]
     lines: list[str] = []
     for statement in kin.setup.body:
-        if isinstance(statement, Iterate | Call):
+        if isinstance(statement, Iterate | Call | FindRoot):
             raise TypeError("what depends on parameters alone is straight-line: a setup program neither iterates nor calls")
         lines += _refusal(statement, inputs) if isinstance(statement, Require) else binding_lines(statement, _PRINTER)
     values = (f"{spelled(o.name)}={_PRINTER.print(o.value)}" for o in kin.setup.outputs)

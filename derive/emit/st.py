@@ -22,6 +22,7 @@ from derive.emit.st_objects import Object, objects_of, ruled
 from derive.emit.st_overview import overview
 from derive.emit.st_reserved import refuse_clashes
 from derive.emit.st_rotation import rotation_function
+from derive.emit.st_search import SEARCH
 from derive.emit.st_selftest import FOLDER as SELF_TESTS
 from derive.emit.st_selftest import PROGRAM as SELF_TEST_PROGRAM
 from derive.emit.st_selftest import test_of
@@ -117,6 +118,7 @@ def _templates() -> Environment:
         pivot=literal(float(PIVOT)),
         solvable=literal(float(SOLVABLE)),
         smallest=literal(1.0 / float(SOLVABLE)),
+        search=SEARCH,
         not_initialized=NOT_INITIALIZED,
         no_meaning=NO_MEANING,
     )

@@ -154,7 +154,9 @@ def _verification(kinematics: Kinematics) -> Iterator[str]:
     yield from wrap(f"{text}. No run on a controller.", _WIDTH)
     if inverted is not None and inverted.missed is not None:
         missed, total = inverted.missed
-        yield from wrap(f"A scan is no proof: it missed {missed} of {total} solutions in this check.", _WIDTH)
+        yield from wrap(
+            f"A search is no proof: of {total} solutions, most of them next to where branches meet, it missed {missed}.", _WIDTH
+        )
 
 
 def _costs(costs: Costs, block: Block) -> Iterator[str]:

@@ -16,10 +16,11 @@ from derive.emit.st_inputs import number_of
 from derive.emit.st_names import joined, stored_name
 from derive.emit.st_program import Printed, printed
 from derive.emit.st_refusal import MISSING, REASON, TURN, Explained, Refusal
+from derive.emit.st_search import SEARCH, search_in, search_text, try_at_signature
 from derive.emit.st_shared import method_name, own_names, signature_of
 from derive.kinematics import Kinematics
 from derive.parameters import limits_of_axis
-from derive.program import Program, shared
+from derive.program import FindRoot, Program, shared
 
 LIMITS_OF_AXIS = limits_of_axis()
 
@@ -65,6 +66,8 @@ class _Source:
     program: Program | None = None
     call: BranchCall | None = None
     is_shared: bool = False
+    search: FindRoot | None = None
+    """Of the methods that search for a root."""
 
 
 def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> tuple[Method, ...]:
@@ -142,7 +145,9 @@ def _shared(program: Program | None, kinematics: Kinematics, contract: Contract,
     called = shared([program]) if program is not None else ()
     for inner in (p for p in called if p.name not in ready):
         ready.add(inner.name)
-        yield _Source(signature_of(inner, spelled_inputs(kinematics), contract), inner, is_shared=True)
+        if (search := search_in(inner)) is not None:
+            yield _Source(try_at_signature(search), search=search)
+        yield _Source(signature_of(inner, spelled_inputs(kinematics), contract), inner, is_shared=True, search=search)
 
 
 def _names(block: Block, contract: Contract) -> list[str]:
@@ -171,11 +176,13 @@ def _method(source: _Source, kinematics: Kinematics, block: Block, contract: Con
     context: dict[str, object] = {"block": block, "method": name, "call": source.call, "reads_rotation": reads}
     if name == "Diagnose":
         context["reasons"] = [_quotable(text) for text in texts(kinematics)]
-    if source.program is not None:
+    if source.search is not None:
+        context |= {"shared": search_text(source.search), "search": SEARCH}
+    elif source.program is not None:
         context["program"] = program = _printed(source, source.program, kinematics, block, contract)
         own = own_names(source.program, spelled_inputs(kinematics))
         context["results"] = [(own[o], text) for o, text in program.outputs.items() if o in own and own[o] != text]
-    template = "Shared" if source.is_shared else name
+    template = "Shared" if source.is_shared and source.search is None else name
     text = templates.get_template(f"methods/{template}.st.j2").render(contract.spelling, **context)
     return Method(source.signature.head(), _tidy(text))
 

@@ -14,7 +14,7 @@ from derive.emit.st_loops import LOCALS, declarations, kept, loop_lines, solve_l
 from derive.emit.st_names import respelled, spellings
 from derive.emit.st_refusal import Refusal
 from derive.emit.st_shared import OUTCOME, call_lines
-from derive.program import DEGREE, Call, Iterate, Let, Program, Require, Select, Solve, Statement, Status
+from derive.program import DEGREE, Call, FindRoot, Iterate, Let, Program, Require, Select, Solve, Statement, Status
 
 _SHORT = 72
 """A selection that fits in this many columns stays on one line."""
@@ -92,7 +92,7 @@ def _kind(statement: Statement, printer: StructuredText) -> Kind:
     Conditions that refuse alike are one condition. Those on the size of inputs stay apart: AND evaluates both
     sides, and what follows them is defined only where they hold. Selections by one condition are one IF.
     """
-    if isinstance(statement, Solve | Iterate | Call):
+    if isinstance(statement, Solve | Iterate | Call | FindRoot):
         return None, statement, False
     if isinstance(statement, Require):
         return statement.otherwise, statement.note, all(map(is_size_test, sp.And.make_args(statement.condition)))

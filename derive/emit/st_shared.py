@@ -57,7 +57,7 @@ def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterato
 
 def _argument(name: sp.Symbol, value: sp.Expr, printer: StructuredText) -> str:
     text = printer.print(value)
-    if value.is_Symbol and "." in text:
+    if value == name and "." in text:
         whole = text.split(".")[0]
         return f"{whole} := {whole}"
     return f"{joined(name.name)} := {text}"

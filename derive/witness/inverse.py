@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from derive.kinematics import Kinematics
 from derive.program import Program, Status
 from derive.run import Array, run
-from derive.search import RANK
 from derive.witness.checks import CLEAR, CLOSURE_TOLERANCE, least_move, worst
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement
+from derive.witness.planted import refused_when_planted
 from derive.witness.roots import Problem, all_solutions, distinct, problem_at, same, within_one_turn
 from derive.witness.samples import SEED, Samples, describe
 
@@ -23,6 +23,8 @@ _NEAR = 15.0
 """How far references stray from the axes, in degrees: near enough for gear couplings not to change the turn."""
 _EVERY, _MOST_MISSED = 6, 0.01
 """Of a search every so-manieth pose is searched for all solutions, and at most this share of them may be missed."""
+_AROUND = 8
+"""References from which a search is asked for all solutions."""
 _TOOL = 0.03
 """The size of the point off the flange, in reaches: less than REGULAR, so that it does not reach a mirror solution."""
 
@@ -69,7 +71,12 @@ def check_solutions(kin: Kinematics, closure: Closure, samples: Samples) -> tupl
         counts.append(len(found))
     if missed > _MOST_MISSED * sum(counts):
         raise Disagreement(f"the search misses {missed} of {sum(counts)} solutions")
-    return max(counts), (missed, sum(counts)) if is_search else None
+    if not is_search:
+        return max(counts), None
+    refused, planted = refused_when_planted(kin, closure, samples)
+    if refused > _MOST_MISSED * planted:
+        raise Disagreement(f"the search refuses {refused} of {planted} poses next to where branches meet")
+    return max(counts), (missed + refused, sum(counts) + planted)
 
 
 def check_offset(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[float, float]:
@@ -108,13 +115,14 @@ def run_slots(kin: Kinematics, program: Program, samples: Samples, commands: dic
 
 
 def _ranks(kin: Kinematics, samples: Samples) -> Slots:
-    """Every slot, and where a branch of a pose may have several solutions one slot for each of them."""
-    if kin.ranked is None:
-        return run_slots(kin, kin.branch, samples, _commands(kin, samples))
+    """Every slot; of a search, from references all around the circle, for a branch may have several solutions."""
+    commands = _commands(kin, samples)
+    search = kin.mechanism.search
+    if search is None:
+        return run_slots(kin, kin.branch, samples, commands)
     found: list[Slots] = []
-    while not found or found[-1][1].any():
-        rank = np.full(len(samples), float(len(found)))
-        found.append(run_slots(kin, kin.ranked, samples, _commands(kin, samples) | {RANK.name: rank}))
+    for turn in np.linspace(0.0, 360.0, _AROUND, endpoint=False):
+        found.append(run_slots(kin, kin.branch, samples, commands | {search.joint.reference.name: np.full(len(samples), turn)}))
     return np.concatenate([axes for axes, _ in found]), np.concatenate([ok for _, ok in found])
 
 

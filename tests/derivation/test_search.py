@@ -1,104 +1,180 @@
-"""The search along a joint, on residuals whose roots are known."""
+"""The search for a root, on trials whose roots are known: on arrays, and on plain numbers."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
-import sympy as sp
+from numpy.typing import NDArray
+from softkin._root import every_root
+from softkin._roots import CELLS
 
-from derive.passes import assemble
-from derive.program import Let, Output, Status, real
-from derive.run import run
-from derive.search import TRIED, Trial, search_loop
+from derive.roots import At, find_roots
 
-START = real("start")
-
-
-def roots(
-    residual: sp.Expr, start: float, crossing: float, fits: sp.Basic = sp.true, rank: int | None = None
-) -> tuple[float, Status]:
-    """Where the search from `start` ends."""
-    value = real("residual")
-    trial = Trial((Let(value, residual),), value, fits)
-    loop = search_loop(trial, START, real("crossing"), sp.false, is_ranked=rank is not None)
-    program = assemble("search", (loop,), [Output("found", TRIED), Output("accepted", real("accepted"))])
-    inputs = {"start": start, "crossing": crossing} | ({} if rank is None else {"rank": rank})
-    outputs, status = run(program, {name: np.asarray(float(value)) for name, value in inputs.items()})
-    accepted = float(outputs["accepted"]) > 0.5
-    return float(outputs["found"]), Status(status.item()) if accepted else Status.UNREACHABLE
+Array = NDArray[np.float64]
+Trial = Callable[[Array, Array, Array, Array], tuple[Array, ...]]
+"""joint, side, freed, angle → value, slope, guard, slope of the guard, directions."""
 
 
-@pytest.mark.parametrize("start", np.linspace(-3.0, 3.0, 9))
-@pytest.mark.parametrize("crossing", (1.0, -1.0))
-def test_the_nearest_root_of_the_wanted_slope(start: float, crossing: float) -> None:
-    found, status = roots(sp.sin(3 * TRIED) / 2, start, crossing)
-    assert status is Status.OK
-    # sin 3t vanishes at k pi / 3; it rises for even k
-    candidates = [k * np.pi / 3 for k in range(-12, 13) if (k % 2 == 0) == (crossing > 0)]
-    assert min(abs(c - found) for c in candidates) < 1e-13
-    assert abs(found - start) == pytest.approx(min(abs(c - start) for c in candidates), abs=1e-13)
+def on_arrays(trial: Trial, start: float) -> list[tuple[float, float, float]]:
+    """Joint, side and free angle of all that is offered."""
+
+    def at(place: At) -> Array:
+        said = trial(place.joint, place.side, place.freed.astype(float), place.angle)
+        return np.stack([np.broadcast_to(v, place.joint.shape) for v in said], axis=1)
+
+    found = find_roots(at, np.array([start]))
+    return list(zip(found.joint.tolist(), found.side.tolist(), found.angle.tolist(), strict=True))
 
 
-@pytest.mark.parametrize("start", (-2.0, 0.1, 1.5))
-def test_roots_are_ranked_by_how_far_they_are(start: float) -> None:
-    candidates = sorted((k * 2 * np.pi / 3 for k in range(-12, 13)), key=lambda c: abs(c - start))
-    for rank in range(3):
-        found, status = roots(sp.sin(3 * TRIED) / 2, start, 1.0, rank=rank)
-        assert status is Status.OK
-        assert found == pytest.approx(candidates[rank], abs=1e-13)
-    assert roots(sp.sin(3 * TRIED) / 2, start, 1.0, rank=4)[1] is Status.UNREACHABLE
+def on_numbers(trial: Trial, start: float) -> list[tuple[float, float, float]]:
+    """The same by the search on plain numbers."""
+
+    def one(given: tuple[float, ...]) -> tuple[float, ...]:
+        return tuple(float(v) for v in trial(*(np.float64(g) for g in given)))
+
+    def accept(given: tuple[float, ...]) -> tuple[float, ...]:
+        return (1.0, given[0], given[1], given[3])
+
+    place = ("tried", "side", "freed", "freed_angle")
+    found = every_root(one, accept, start, True, place, place, 4, lambda given, _: trial(*given))
+    return [(joint, side, angle) for joint, side, angle in found]
 
 
-def test_a_touched_root_may_be_met_again_beside_its_flat_place_and_then_no_more() -> None:
-    residual = (1 - sp.cos(TRIED)) / 2
-    assert roots(residual, 0.0, 1.0, rank=0) == (0.0, Status.OK)
-    again, status = roots(residual, 0.0, 1.0, rank=1)
-    assert status is Status.OK
-    assert abs(again) < np.radians(1e-4)
-    assert roots(residual, 0.0, 1.0, rank=2)[1] is Status.UNREACHABLE
+BOTH = pytest.mark.parametrize("search", (on_arrays, on_numbers))
 
 
-def test_behind_a_touched_root_of_another_branch_the_search_goes_on() -> None:
-    """(1 - cos t) sin(t - 2) touches zero at 0, where the trial does not fit, and crosses it at 2."""
-    found, status = roots((1 - sp.cos(TRIED)) * sp.sin(TRIED - 2) / 2, 0.0, 1.0, sp.Gt(sp.sin(TRIED), sp.Rational(1, 2)))
-    assert status is Status.OK
-    assert found == pytest.approx(2.0, abs=1e-12)
+def free_of_guard(value: Callable[[Array], Array], slope: Callable[[Array], Array]) -> Trial:
+    return lambda t, side, freed, angle: (value(t), slope(t), np.ones_like(t), np.zeros_like(t))
 
 
-def test_a_root_at_the_start() -> None:
-    for crossing, expected in ((1.0, Status.OK), (-1.0, Status.OK)):
-        found, status = roots(sp.sin(TRIED), 0.0 if crossing > 0 else np.pi, crossing)
-        assert status is expected
-        assert np.sin(found) == pytest.approx(0.0, abs=1e-14)
+def roots_of(found: list[tuple[float, float, float]], value: Callable[[Array], Array]) -> list[float]:
+    """The joints around the circle, each once; what is offered must be a root."""
+    joints = sorted(t % (2 * np.pi) for t, _, _ in found)
+    assert all(abs(value(np.float64(t))) < 1e-11 for t in joints)
+    kept: list[float] = []
+    for t in joints:
+        if not kept or t - kept[-1] > 1e-5:
+            kept.append(t)
+    return kept[:-1] if len(kept) > 1 and kept[0] + 2 * np.pi - kept[-1] < 1e-5 else kept
 
 
-def test_a_root_of_the_other_slope_at_the_start_is_not_taken() -> None:
-    found, status = roots(sp.sin(TRIED), 0.0, -1.0)
-    assert status is Status.OK
-    assert abs(found) == pytest.approx(np.pi, abs=1e-12)
+@BOTH
+@pytest.mark.parametrize("count", (1, 2, 3, 7))
+@pytest.mark.parametrize("start", (-3.0, 0.1, 1.5))
+def test_simple_roots(search: Callable[[Trial, float], list[tuple[float, float, float]]], count: int, start: float) -> None:
+    found = search(free_of_guard(lambda t: np.sin(count * t + 0.3), lambda t: count * np.cos(count * t + 0.3)), start)
+    assert len(roots_of(found, lambda t: np.sin(count * t + 0.3))) == 2 * count
 
 
-@pytest.mark.parametrize("crossing", (1.0, -1.0))
-def test_a_root_that_is_touched_at_the_start(crossing: float) -> None:
-    found, status = roots((1 - sp.cos(TRIED)) / 2, 0.0, crossing)
-    assert (found, status) == (0.0, Status.OK)
+@BOTH
+@pytest.mark.parametrize("apart", (0.05, 1e-2, 1e-4, 1e-5))
+def test_two_roots_close_to_each_other(search: Callable[[Trial, float], list[tuple[float, float, float]]], apart: float) -> None:
+    """cos t - cos(apart / 2) around 0."""
+    level = np.cos(apart / 2)
+    found = search(free_of_guard(lambda t: np.cos(t) - level, lambda t: -np.sin(t)), 1.234)
+    near = sorted((t + np.pi) % (2 * np.pi) - np.pi for t, _, _ in found)
+    assert min(near) == pytest.approx(-apart / 2, rel=1e-3)
+    assert max(near) == pytest.approx(apart / 2, rel=1e-3)
 
 
-@pytest.mark.parametrize("crossing", (1.0, -1.0))
-def test_a_jump_is_no_root(crossing: float) -> None:
-    """cos t over its size: jumps at ±90 degrees and never vanishes."""
-    assert roots(sp.cos(TRIED) / sp.Abs(sp.cos(TRIED)), 0.3, crossing)[1] is Status.UNREACHABLE
+@BOTH
+@pytest.mark.parametrize("apart", (0.05, 1e-2))
+def test_three_roots_close_to_each_other(
+    search: Callable[[Trial, float], list[tuple[float, float, float]]], apart: float
+) -> None:
+    def value(t: Array) -> Array:
+        return np.sin(t) * (np.cos(apart) - np.cos(t))
+
+    def slope(t: Array) -> Array:
+        return np.cos(t) * (np.cos(apart) - np.cos(t)) + np.sin(t) ** 2
+
+    near = [(t + np.pi) % (2 * np.pi) - np.pi for t, _, _ in search(free_of_guard(value, slope), 0.777)]
+    for root in (-apart, 0.0, apart):
+        assert min(abs(t - root) for t in near) < 1e-3 * apart
 
 
-def test_no_root() -> None:
-    assert roots(2 + sp.sin(TRIED), 0.0, 1.0)[1] is Status.UNREACHABLE
+@BOTH
+def test_a_root_that_is_touched(search: Callable[[Trial, float], list[tuple[float, float, float]]]) -> None:
+    for start in (0.0, 0.3, 2.0):
+        found = search(free_of_guard(lambda t: 1 - np.cos(t), np.sin), start)
+        assert found
+        assert all(abs((t + np.pi) % (2 * np.pi) - np.pi) < 2e-6 for t, _, _ in found)
 
 
-def test_a_root_of_another_branch_is_passed_over() -> None:
-    found, status = roots(sp.sin(2 * TRIED), 0.1, 1.0, sp.Lt(sp.cos(TRIED), 0))
-    assert status is Status.OK
-    assert found == pytest.approx(np.pi, abs=1e-13)
+@BOTH
+def test_no_root(search: Callable[[Trial, float], list[tuple[float, float, float]]]) -> None:
+    assert search(free_of_guard(lambda t: 2 + np.sin(t), np.cos), 0.0) == []
 
 
-def test_not_a_number_ends() -> None:
-    assert roots(sp.sin(TRIED), np.nan, 1.0)[1] is Status.UNREACHABLE
+@BOTH
+def test_not_a_number_ends(search: Callable[[Trial, float], list[tuple[float, float, float]]]) -> None:
+    search(free_of_guard(lambda t: t * np.nan, lambda t: t * np.nan), 0.0)
+    search(free_of_guard(np.sin, np.cos), np.nan)
+
+
+@BOTH
+@pytest.mark.parametrize("level", (0.9, 0.0, -0.999, -1 + 1e-6, -1 + 1e-10))
+@pytest.mark.parametrize("shift", (0.0, 1e-3, 1e-7))
+def test_both_sides_of_a_guard_are_one_curve(
+    search: Callable[[Trial, float], list[tuple[float, float, float]]], level: float, shift: float
+) -> None:
+    """side sqrt(-level - cos t) = shift: reachable around pi alone, where the two sides meet at the ends."""
+
+    def trial(t: Array, side: Array, freed: Array, angle: Array) -> tuple[Array, ...]:
+        room = -level - np.cos(t)
+        root = np.sqrt(np.maximum(room, 0.0))
+        slope = np.where(root > 0, np.sin(t) / np.where(root > 0, 2 * root, 1.0), 0.0)
+        return side * root - shift, side * slope, room + 1e-12, np.sin(t)
+
+    if -level <= -1 + shift**2:
+        return
+    wanted = [t for t, side, _ in search(trial, 0.4) if side > 0 or shift == 0.0]
+    ends = np.arccos(-level - shift**2)
+    for end in (ends, 2 * np.pi - ends):
+        assert min(abs(t % (2 * np.pi) - end) for t in wanted) < 1e-5
+
+
+@BOTH
+@pytest.mark.parametrize("miss", (0.1, 1e-3, 1e-5, 1e-7, 1e-10, 0.0))
+def test_a_direction_that_turns_fast(search: Callable[[Trial, float], list[tuple[float, float, float]]], miss: float) -> None:
+    """The angle of (sin t, miss) sweeps half a turn around 0; the value is 0 where it is 1 radian."""
+
+    def trial(t: Array, side: Array, freed: Array, angle: Array) -> tuple[Array, ...]:
+        length = np.hypot(np.sin(t), miss)
+        is_free = (freed >= 0) | (length < 1e-11)
+        size = np.where(is_free, 1.0, length)
+        c = np.where(is_free, np.cos(angle), np.sin(t) / size)
+        s = np.where(is_free, np.sin(angle), miss / size)
+        turning = np.where(is_free, 0.0, -np.cos(t) * miss / size**2)
+        value = s * np.cos(1.0) - c * np.sin(1.0)
+        slope = (c * np.cos(1.0) + s * np.sin(1.0)) * turning
+        return value, slope, np.ones_like(t), np.zeros_like(t), c, s
+
+    joint = np.arcsin(miss / np.tan(1.0))
+    for start in (0.0, 0.5, 3.0):
+        found = search(trial, start)
+        away = min(abs((t - joint + np.pi) % (2 * np.pi) - np.pi) for t, _, _ in found)
+        assert away < max(1e-6, 1e-9 * joint)
+        if miss < 1e-6:
+            assert any(abs(np.sin(angle - 1.0)) < 1e-9 for t, _, angle in found if abs((t + np.pi) % (2 * np.pi) - np.pi) < 1e-5)
+
+
+def test_both_searches_offer_the_same() -> None:
+    """What is seen between two cells does not depend on how the numbers are arranged."""
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        a, b, c, d = rng.uniform(-1, 1, 4)
+
+        def value(t: Array, a: float = a, b: float = b, c: float = c, d: float = d) -> Array:
+            return a * np.sin(t) + b * np.cos(2 * t) + c * np.sin(3 * t) + d
+
+        def slope(t: Array, a: float = a, b: float = b, c: float = c) -> Array:
+            return a * np.cos(t) - 2 * b * np.sin(2 * t) + 3 * c * np.cos(3 * t)
+
+        one, other = (sorted(t for t, _, _ in f(free_of_guard(value, slope), 0.1)) for f in (on_arrays, on_numbers))
+        assert np.allclose(one, other, atol=1e-12)
+        circle = np.linspace(0.0, 2 * np.pi, 200 * CELLS, endpoint=False) + 0.1
+        signs = np.sign(value(circle))
+        assert len(roots_of([(t, 1.0, 0.0) for t in one], value)) == np.count_nonzero(signs != np.roll(signs, -1))

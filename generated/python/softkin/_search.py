@@ -10,10 +10,10 @@ from softkin._configuration import AUTOMATIC, Slot, slots
 from softkin._core import Mechanism
 from softkin._types import Diagnosis, FrameLike, Numbers, Reals, Rotation, Solution, Status, Vector
 
-_FIRST: Reals = (0.0,)
 _SAME = 1e-4
-"""Axes nearer than this (degrees, lengths) are one solution. The search meets what lies opposite the reference at both
-ends, and what the residual only touches again beside it; two solutions of a branch have one of another between them."""
+"""Axes nearer than this (degrees, lengths) are one solution."""
+_COINCIDE = 1e-11
+"""A solution whose margin is smaller lies on both branches."""
 
 
 class SearchedInverse(Mechanism):
@@ -21,35 +21,58 @@ class SearchedInverse(Mechanism):
 
     __slots__ = ()
 
+    SIDES = 2
+    """How many of the first branches a search decides; of the others it finds all."""
+
     def inverse_all(self, frame: FrameLike, reference: Numbers | None = None) -> Sequence[Solution]:
         """Every branch of the inverse, in fixed slots: branch 1 before branch 2, the first byte varies fastest.
 
         A branch may have several solutions: `axes` is that nearest to the reference along the joint that is searched,
-        `others` has the rest, by rank. Those beyond the limits are left out; periods are open, as in `inverse`.
-        A slot without axes has the status instead. A search is no proof: see the module for how many it misses.
-        Raises BAD_INPUT only for what has not the form of a frame.
+        `others` has the rest in this order. Those beyond the limits are left out; periods are open, as in `inverse`.
+        A slot without axes has the status instead. Raises BAD_INPUT only for what has not the form of a frame.
         """
         position, rows = self._pose(frame)
         near, rotation, every = self._near(reference), self._made(rows), slots((AUTOMATIC,) * self.BRANCHES)
         if isinstance(rotation, Diagnosis):
             return tuple(self._solution(slot, float(rotation.status)) for slot in every)
-        return tuple(self._ranks(slot, position, rotation, near) for slot in every)
-
-    def _ranks(self, slot: Slot, position: Vector, rotation: Rotation, reference: Reals) -> Solution:
-        """The solutions of a slot."""
-        found: list[Reals] = []
-        allowed: list[Reals] = []
         turns = (0.0,) * len(self.PERIOD_AXES)
-        while True:
-            axes = self._ranked(position, rotation, slot[1], turns, reference, (float(len(found)),))
-            if isinstance(axes, Status):
-                status = Status.UNREACHABLE if found else axes
-                first = self._solution(slot, allowed[0] if allowed else float(status))
-                return first._replace(others=tuple(allowed[1:]))
-            is_new = not any(self._are_same(axes, other) for other in found)
-            found.append(axes)
-            if is_new and self._limit_status(axes) is Status.OK:
-                allowed.append(axes)
+        given = self._search_given(position, rotation, every[0][1], turns, near)
+        if isinstance(given, Status):
+            return tuple(self._solution(slot, float(given)) for slot in every)
+        if not self._is_searched():
+            return tuple(self._one(slot, self._branch(position, rotation, slot[1], turns, near)) for slot in every)
+        found: dict[Reals, list[Reals]] = {}
+        for signs in dict.fromkeys(slot[1][: self.SIDES] for slot in every):
+            given = self._search_given(position, rotation, (*signs, *(0.0,) * (self.BRANCHES - self.SIDES)), turns, near)
+            for joints in self._all_joints(given) if not isinstance(given, Status) else ():
+                self._sort_in(found, self._from_joints(joints, turns, near))
+        return tuple(self._solutions(slot, found.get(slot[1], [])) for slot in every)
+
+    def _one(self, slot: Slot, axes: Reals | Status) -> Solution:
+        """A slot with one solution at most."""
+        if not isinstance(axes, Status) and self._limit_status(axes) is not Status.OK:
+            return self._solution(slot, float(Status.UNREACHABLE))
+        return self._solution(slot, float(axes) if isinstance(axes, Status) else axes)
+
+    def _sort_in(self, found: dict[Reals, list[Reals]], axes: Reals | Status) -> None:
+        """A solution under the signs of its branch; where branches coincide, under those of both."""
+        pose = self._forward(axes) if not isinstance(axes, Status) else axes
+        if isinstance(pose, Status) or isinstance(axes, Status):
+            return
+        signs: list[tuple[float, ...]] = [()]
+        for margin in pose[2]:
+            sides = (1.0, -1.0) if abs(margin) < _COINCIDE else (1.0 if margin > 0.0 else -1.0,)
+            signs = [(*s, side) for s in signs for side in sides]
+        for key in signs:
+            others = found.setdefault(key, [])
+            if not any(self._are_same(axes, other) for other in others):
+                others.append(axes)
+
+    def _solutions(self, slot: Slot, found: Sequence[Reals]) -> Solution:
+        """A slot with its solutions, nearest first."""
+        allowed = [axes for axes in found if self._limit_status(axes) is Status.OK]
+        first = self._solution(slot, allowed[0] if allowed else float(Status.UNREACHABLE))
+        return first._replace(others=tuple(allowed[1:]))
 
     def _are_same(self, axes: Reals, other: Reals) -> bool:
         """Whether the axes differ by full turns alone."""
@@ -58,14 +81,20 @@ class SearchedInverse(Mechanism):
             apart[index] = abs((apart[index] + 180.0) % 360.0 - 180.0)
         return max(apart) < _SAME
 
-    def _branch(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
-    ) -> Reals | Status:
-        """The solution nearest to the reference."""
-        return self._ranked(position, rotation, signs, turns, reference, _FIRST)
+    @abstractmethod
+    def _is_searched(self) -> bool:
+        """Whether there is no closed form for this machine."""
 
     @abstractmethod
-    def _ranked(
-        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals, number: Reals
+    def _search_given(
+        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals
     ) -> Reals | Status:
-        """The solution that has so many others nearer to the reference."""
+        """What the search is given."""
+
+    @abstractmethod
+    def _all_joints(self, given: Reals) -> list[Reals]:
+        """The joints at every root, nearest to the reference first."""
+
+    @abstractmethod
+    def _from_joints(self, joints: Reals, turns: Reals, reference: Reals) -> Reals | Status:
+        """The axes of joints."""

@@ -28,14 +28,15 @@ Singularities:
     determinant: type 1
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
-    forward: 168 additions, 184 multiplications, 43 divisions, 1 square roots, 16 sines
-    inverse: 77543 additions, 158544 multiplications, 19839 divisions, 7207 square roots, 14412 sines
-    inverse, all 16 branches open: 1240193 additions, 2536029 multiplications, 317289 divisions, 115282 square roots, 230592 sines
-    search along the joint, from its reference outwards: at most 1800 passes, all of which are counted
+    forward: 168 additions, 184 multiplications, 44 divisions, 1 square roots, 16 sines
+    inverse: 62794 additions, 106601 multiplications, 18733 divisions, 2315 square roots, 5216 sines
+    inverse, all 16 branches open: 1004209 additions, 1704941 multiplications, 299593 divisions, 37010 square roots, 83456 sines
+    the search along A6: at most 550 passes, all of which are counted
 
-With a lateral offset of axis A6 no closed form is known: the inverse searches along A6, from the reference
-outwards. The fourth byte then tells whether the distance that is searched to vanish rises or falls with A6;
-without the offset it is always 1.
+With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
+answers with the one that is nearest to the reference. With A6 known the arm is that with a spherical wrist,
+and what is left is the cosine between axis 4 and axis 5. The fourth byte tells whether it rises or falls with
+A6; without the offset it is always 1.
 
 The wrist byte is the sign of cos A5 for a spherical wrist, and the sign of sin A4 with a lateral offset.
 
@@ -43,7 +44,7 @@ Verified at 144 poses, before it was written, by a witness that knows the closur
     residual of the closure below 1e-12, round trip below 1e-12,
     Jacobian against automatic differentiation below 1e-12,
     solutions that a search from many starts finds: 8, as many as the inverse has.
-    A scan is no proof: it missed 0 of 178 solutions in this check.
+    A search is no proof: of 406 solutions, most of them next to where branches meet, it missed 1.
 """
 
 from __future__ import annotations
@@ -53,13 +54,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from softkin._core import Image, Pose
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, solve, sqrt
+from softkin._root import every_root, nearest_root
 from softkin._search import SearchedInverse
 from softkin._types import Axis, ConfigurationByte, Diagnosis, Matrix, Parameter, Reals, Rotation, Status, Vector
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from softkin._array import Programs
+    from softkin._array_programs.ac6_rzryryrxryrz_j6offset import ArrayPrograms
 
 
 class Constants(NamedTuple):
@@ -122,9 +124,9 @@ class Constants(NamedTuple):
     single_a6: float
     mid_a6: float
     machine_scale: float
+    effective_q3_tried: float
+    swing_scale_q3_tried: float
     searched: float
-    effective_q3_closed: float
-    swing_scale_q3_closed: float
 
 
 class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
@@ -466,10 +468,9 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         )
         mid_a6 = 0.5*effective_lower_a6 + 0.5*effective_upper_a6
         machine_scale = a1 + a2 + d4  # a length of the machine
+        effective_q3_tried = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
+        swing_scale_q3_tried = 2.0*a2*effective_q3_tried  # q3: law of cosines in the x_from_q1² + z_from_q1² equation
         searched = 1.0 if abs(j6_offset_x) > 0.0 else 0.0  # whether to search along A6
-        effective_q3_closed = sqrt(a3*a3 + d4*d4)  # effective length that the angle turns
-        # q3: law of cosines in the x_from_q1² + z_from_q1² equation
-        swing_scale_q3_closed = 2.0*a2*effective_q3_closed
         return Constants(
             d1=d1, a1=a1, a2=a2, a3=a3, d4=d4, j6_offset_x=j6_offset_x, d6=d6, offset_a1=offset_a1,
             offset_a2=offset_a2, offset_a3=offset_a3, offset_a4=offset_a4, offset_a5=offset_a5, offset_a6=offset_a6,
@@ -483,9 +484,568 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             lower_a5=effective_lower_a5, upper_a5=effective_upper_a5, unlimited_a5=unlimited_a5, lowest_a5=lowest_a5,
             highest_a5=highest_a5, single_a5=single_a5, mid_a5=mid_a5, lower_a6=effective_lower_a6,
             upper_a6=effective_upper_a6, unlimited_a6=unlimited_a6, lowest_a6=lowest_a6, highest_a6=highest_a6,
-            single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale, searched=searched,
-            effective_q3_closed=effective_q3_closed, swing_scale_q3_closed=swing_scale_q3_closed,
+            single_a6=single_a6, mid_a6=mid_a6, machine_scale=machine_scale, effective_q3_tried=effective_q3_tried,
+            swing_scale_q3_tried=swing_scale_q3_tried, searched=searched,
         )
+
+    def _try_joint(self, given: Reals) -> Reals | Status:
+        """What a trial leaves of the closure, its slope, and what may turn fast with the joint."""
+        (
+            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
+            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_elbow, wanted_shoulder,
+        ) = given
+        k = self._constants
+        a1 = k.a1
+        a2 = k.a2
+        a3 = k.a3
+        d1 = k.d1
+        d4 = k.d4
+        d6 = k.d6
+        effective_q3_tried = k.effective_q3_tried
+        j6_offset_x = k.j6_offset_x
+        machine_scale = k.machine_scale
+        swing_scale_q3_tried = k.swing_scale_q3_tried
+        cos_q6_tried = cos(tried)
+        sin_q6_tried = sin(tried)
+        # the point that the last joints turn about
+        wrist_x_tried = goal_x + goal_r12*j6_offset_x*sin_q6_tried - d6*goal_r13 - goal_r11*j6_offset_x*cos_q6_tried
+        wrist_y_tried = goal_y + goal_r22*j6_offset_x*sin_q6_tried - d6*goal_r23 - goal_r21*j6_offset_x*cos_q6_tried
+        # q1: of the point from its axis
+        distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
+        slope_cos_q6_tried = -sin(tried)
+        slope_sin_q6_tried = cos(tried)
+        slope_wrist_x_tried = goal_r12*j6_offset_x*slope_sin_q6_tried - goal_r11*j6_offset_x*slope_cos_q6_tried
+        slope_wrist_y_tried = goal_r22*j6_offset_x*slope_sin_q6_tried - goal_r21*j6_offset_x*slope_cos_q6_tried
+        # its reference where it is free
+        if distance_q1_tried > 1e-11*machine_scale and ((freed > 0.5) or (freed < -0.5)):
+            along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
+            if distance_q1_tried > 1e-11*machine_scale:
+                length_q1_tried = distance_q1_tried
+                slope_distance_q1_tried = (
+                    0.5*(
+                        2.0*slope_wrist_x_tried*wrist_x_tried + 2.0*slope_wrist_y_tried*wrist_y_tried
+                    )/(distance_q1_tried if distance_q1_tried > 0.0 else 1.0)
+                    if distance_q1_tried > 0.0
+                    else 0.0
+                )
+                slope_length_q1_tried = slope_distance_q1_tried
+            else:
+                length_q1_tried = 1.0
+                slope_length_q1_tried = 0.0
+            cos_q1_tried = along_q1_tried/length_q1_tried
+            across_q1_tried = wanted_shoulder*wrist_y_tried
+            sin_q1_tried = across_q1_tried/length_q1_tried
+            slope_along_q1_tried = slope_wrist_x_tried*wanted_shoulder
+            slope_cos_q1_tried = (
+                slope_along_q1_tried/length_q1_tried
+                - along_q1_tried*slope_length_q1_tried/(length_q1_tried*length_q1_tried)
+            )
+            slope_across_q1_tried = slope_wrist_y_tried*wanted_shoulder
+            slope_sin_q1_tried = (
+                slope_across_q1_tried/length_q1_tried
+                - across_q1_tried*slope_length_q1_tried/(length_q1_tried*length_q1_tried)
+            )
+        else:
+            chosen_q1 = freed_angle if (freed > -0.5) and (freed < 0.5) else free_a1  # q1, where it is free
+            cos_q1_tried = cos(chosen_q1)
+            sin_q1_tried = sin(chosen_q1)
+            slope_cos_q1_tried = 0.0
+            slope_sin_q1_tried = 0.0
+        r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
+        # what the unknown links must span
+        wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
+        wrist_z_tried = goal_z + goal_r32*j6_offset_x*sin_q6_tried - d6*goal_r33 - goal_r31*j6_offset_x*cos_q6_tried
+        wrist_z_from_q1_tried = wrist_z_tried - d1  # what the unknown links must span
+        reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
+        # 1 - cosine, times the scale
+        one_less_cos_q3_tried = (a2 + effective_q3_tried + reach_tried)*(a2 + effective_q3_tried - reach_tried)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_tried = (effective_q3_tried + reach_tried - a2)*(a2 + reach_tried - effective_q3_tried)
+        # twice the scale, with the rounding of its parts
+        twice_scale_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        slope_wrist_z_tried = goal_r32*j6_offset_x*slope_sin_q6_tried - goal_r31*j6_offset_x*slope_cos_q6_tried
+        slope_wrist_x_from_q1_tried = (
+            slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
+            + slope_sin_q1_tried*wrist_y_tried
+        )
+        slope_reach_tried = (
+            0.5*(
+                2.0*slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried + 2.0*slope_wrist_z_tried*wrist_z_from_q1_tried
+            )/(reach_tried if reach_tried > 0.0 else 1.0)
+            if reach_tried > 0.0
+            else 0.0
+        )
+        slope_one_less_cos_q3_tried = (
+            (a2 + effective_q3_tried - reach_tried)*slope_reach_tried
+            - (a2 + effective_q3_tried + reach_tried)*slope_reach_tried
+        )
+        slope_one_plus_cos_q3_tried = (
+            (effective_q3_tried + reach_tried - a2)*slope_reach_tried
+            + (a2 + reach_tried - effective_q3_tried)*slope_reach_tried
+        )
+        if twice_scale_q3_tried > 0.0:
+            divisor_of_cos_q3_tried = twice_scale_q3_tried
+            slope_twice_scale_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+            slope_divisor_of_cos_q3_tried = slope_twice_scale_q3_tried
+        else:
+            divisor_of_cos_q3_tried = 1.0
+            slope_divisor_of_cos_q3_tried = 0.0
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
+        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
+        root_of_sin_swing_q3_tried = (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
+        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*side*wanted_elbow/divisor_of_cos_q3_tried
+        cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
+        sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
+        slope_cos_swing_q3_tried = (
+            (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried)/divisor_of_cos_q3_tried
+            - (one_plus_cos_q3_tried - one_less_cos_q3_tried)*slope_divisor_of_cos_q3_tried/(
+                divisor_of_cos_q3_tried*divisor_of_cos_q3_tried
+            )
+        )
+        slope_sine_square_q3_tried = (
+            one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
+        )
+        slope_root_of_sin_swing_q3_tried = (
+            0.5*slope_sine_square_q3_tried/(root_of_sin_swing_q3_tried if root_of_sin_swing_q3_tried > 0.0 else 1.0)
+            if root_of_sin_swing_q3_tried > 0.0
+            else 0.0
+        )
+        slope_sin_swing_q3_tried = (
+            2.0*side*slope_root_of_sin_swing_q3_tried*wanted_elbow/divisor_of_cos_q3_tried
+            - 2.0*root_of_sin_swing_q3_tried*side*slope_divisor_of_cos_q3_tried*wanted_elbow/(
+                divisor_of_cos_q3_tried*divisor_of_cos_q3_tried
+            )
+        )
+        slope_cos_q3_tried = (
+            a3*slope_cos_swing_q3_tried/effective_q3_tried + d4*slope_sin_swing_q3_tried/effective_q3_tried
+        )
+        slope_sin_q3_tried = (
+            a3*slope_sin_swing_q3_tried/effective_q3_tried - d4*slope_cos_swing_q3_tried/effective_q3_tried
+        )
+        # its reference where it is free
+        if reach_tried > 1e-11*machine_scale and ((freed > 1.5) or (freed < 0.5)):
+            arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
+            arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
+            # q2: linear pair in the x_from_q1 and z_from_q1 equations
+            along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
+            across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
+            slope_arm_along_q2_tried = a3*slope_sin_q3_tried + d4*slope_cos_q3_tried
+            slope_arm_across_q2_tried = a3*slope_cos_q3_tried - d4*slope_sin_q3_tried
+            slope_along_q2_tried = (
+                arm_across_q2_tried*slope_wrist_z_tried + arm_along_q2_tried*slope_wrist_x_from_q1_tried
+                + slope_arm_across_q2_tried*wrist_z_from_q1_tried + slope_arm_along_q2_tried*wrist_x_from_q1_tried
+            )
+            slope_across_q2_tried = (
+                arm_across_q2_tried*slope_wrist_x_from_q1_tried + slope_arm_across_q2_tried*wrist_x_from_q1_tried
+                - arm_along_q2_tried*slope_wrist_z_tried - slope_arm_along_q2_tried*wrist_z_from_q1_tried
+            )
+            if reach_tried > 1e-11*machine_scale and across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0:
+                root_of_length_q2_tried = sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried)
+                length_q2_tried = root_of_length_q2_tried
+                slope_root_of_length_q2_tried = (
+                    0.5*(
+                        2.0*across_q2_tried*slope_across_q2_tried + 2.0*along_q2_tried*slope_along_q2_tried
+                    )/(root_of_length_q2_tried if root_of_length_q2_tried > 0.0 else 1.0)
+                    if root_of_length_q2_tried > 0.0
+                    else 0.0
+                )
+                slope_length_q2_tried = slope_root_of_length_q2_tried
+            else:
+                length_q2_tried = 1.0
+                slope_length_q2_tried = 0.0
+            cos_q2_tried = along_q2_tried/length_q2_tried
+            sin_q2_tried = across_q2_tried/length_q2_tried
+            slope_cos_q2_tried = (
+                slope_along_q2_tried/length_q2_tried
+                - along_q2_tried*slope_length_q2_tried/(length_q2_tried*length_q2_tried)
+            )
+            slope_sin_q2_tried = (
+                slope_across_q2_tried/length_q2_tried
+                - across_q2_tried*slope_length_q2_tried/(length_q2_tried*length_q2_tried)
+            )
+        else:
+            chosen_q2 = freed_angle if (freed > 0.5) and (freed < 1.5) else free_a2  # q2, where it is free
+            cos_q2_tried = cos(chosen_q2)
+            sin_q2_tried = sin(chosen_q2)
+            slope_cos_q2_tried = 0.0
+            slope_sin_q2_tried = 0.0
+        sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried
+        cos_q23_tried = cos_q2_tried*cos_q3_tried - sin_q2_tried*sin_q3_tried
+        r11_from_q123_tried = r11_from_q1_tried*cos_q23_tried - goal_r31*sin_q23_tried
+        r12_from_q1_tried = goal_r12*cos_q1_tried + goal_r22*sin_q1_tried
+        r12_from_q123_tried = r12_from_q1_tried*cos_q23_tried - goal_r32*sin_q23_tried
+        r12_from_q123_before_q6_tried = r12_from_q123_tried*cos_q6_tried + r11_from_q123_tried*sin_q6_tried
+        residual_tried = -r12_from_q123_before_q6_tried
+        slope_r11_from_q1_tried = goal_r11*slope_cos_q1_tried + goal_r21*slope_sin_q1_tried
+        slope_sin_q23_tried = (
+            slope_sin_q3_tried*cos_q2_tried + slope_sin_q2_tried*cos_q3_tried + slope_cos_q3_tried*sin_q2_tried
+            + slope_cos_q2_tried*sin_q3_tried
+        )
+        slope_cos_q23_tried = (
+            slope_cos_q3_tried*cos_q2_tried + slope_cos_q2_tried*cos_q3_tried - slope_sin_q3_tried*sin_q2_tried
+            - slope_sin_q2_tried*sin_q3_tried
+        )
+        slope_r11_from_q123_tried = (
+            slope_r11_from_q1_tried*cos_q23_tried + r11_from_q1_tried*slope_cos_q23_tried
+            - goal_r31*slope_sin_q23_tried
+        )
+        slope_r12_from_q1_tried = goal_r12*slope_cos_q1_tried + goal_r22*slope_sin_q1_tried
+        slope_r12_from_q123_tried = (
+            slope_r12_from_q1_tried*cos_q23_tried + r12_from_q1_tried*slope_cos_q23_tried
+            - goal_r32*slope_sin_q23_tried
+        )
+        slope_r12_from_q123_before_q6_tried = (
+            slope_r12_from_q123_tried*cos_q6_tried + r11_from_q123_tried*slope_sin_q6_tried
+            + r12_from_q123_tried*slope_cos_q6_tried + slope_r11_from_q123_tried*sin_q6_tried
+        )
+        slope_residual_tried = -slope_r12_from_q123_before_q6_tried
+        guard = sine_square_q3_tried + 1e-12*swing_scale_q3_tried*swing_scale_q3_tried
+        return (
+            residual_tried, slope_residual_tried, guard, slope_sine_square_q3_tried, cos_q1_tried, sin_q1_tried,
+            cos_q2_tried, sin_q2_tried,
+        )
+
+    def _finish_root(self, given: Reals) -> Reals | Status:
+        """The joints at a root, improved by Newton's method, and whether they are wanted."""
+        (
+            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
+            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_crossing, wanted_elbow,
+            wanted_shoulder, wanted_wrist,
+        ) = given
+        k = self._constants
+        a1 = k.a1
+        a2 = k.a2
+        a3 = k.a3
+        d1 = k.d1
+        d4 = k.d4
+        d6 = k.d6
+        effective_q3_tried = k.effective_q3_tried
+        j6_offset_x = k.j6_offset_x
+        machine_scale = k.machine_scale
+        cos_q6_tried = cos(tried)
+        sin_q6_tried = sin(tried)
+        # the point that the last joints turn about
+        wrist_x_tried = goal_x + goal_r12*j6_offset_x*sin_q6_tried - d6*goal_r13 - goal_r11*j6_offset_x*cos_q6_tried
+        wrist_y_tried = goal_y + goal_r22*j6_offset_x*sin_q6_tried - d6*goal_r23 - goal_r21*j6_offset_x*cos_q6_tried
+        # q1: of the point from its axis
+        distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
+        # its reference where it is free
+        if distance_q1_tried > 1e-11*machine_scale and ((freed > 0.5) or (freed < -0.5)):
+            along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
+            length_q1_tried = distance_q1_tried if distance_q1_tried > 1e-11*machine_scale else 1.0
+            cos_q1_tried = along_q1_tried/length_q1_tried
+            across_q1_tried = wanted_shoulder*wrist_y_tried
+            sin_q1_tried = across_q1_tried/length_q1_tried
+        else:
+            chosen_q1 = freed_angle if (freed > -0.5) and (freed < 0.5) else free_a1  # q1, where it is free
+            cos_q1_tried = cos(chosen_q1)
+            sin_q1_tried = sin(chosen_q1)
+        # what the unknown links must span
+        wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
+        wrist_z_tried = goal_z + goal_r32*j6_offset_x*sin_q6_tried - d6*goal_r33 - goal_r31*j6_offset_x*cos_q6_tried
+        wrist_z_from_q1_tried = wrist_z_tried - d1  # what the unknown links must span
+        reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
+        # 1 - cosine, times the scale
+        one_less_cos_q3_tried = (a2 + effective_q3_tried + reach_tried)*(a2 + effective_q3_tried - reach_tried)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_tried = (effective_q3_tried + reach_tried - a2)*(a2 + reach_tried - effective_q3_tried)
+        # twice the scale, with the rounding of its parts
+        twice_scale_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        divisor_of_cos_q3_tried = twice_scale_q3_tried if twice_scale_q3_tried > 0.0 else 1.0
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
+        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
+        sin_swing_q3_tried = (
+            2.0*(sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)*side*wanted_elbow
+            /divisor_of_cos_q3_tried
+        )
+        cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
+        sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
+        # its reference where it is free
+        if reach_tried > 1e-11*machine_scale and ((freed > 1.5) or (freed < 0.5)):
+            arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
+            arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
+            # q2: linear pair in the x_from_q1 and z_from_q1 equations
+            along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
+            across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
+            length_q2_tried = (
+                sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried)
+                if (reach_tried > 1e-11*machine_scale) and (
+                    across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0
+                )
+                else 1.0
+            )
+            cos_q2_tried = along_q2_tried/length_q2_tried
+            sin_q2_tried = across_q2_tried/length_q2_tried
+        else:
+            chosen_q2 = freed_angle if (freed > 0.5) and (freed < 1.5) else free_a2  # q2, where it is free
+            cos_q2_tried = cos(chosen_q2)
+            sin_q2_tried = sin(chosen_q2)
+        r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried
+        r22_from_q1_tried = goal_r22*cos_q1_tried - goal_r12*sin_q1_tried
+        r22_from_q123_before_q6_tried = r22_from_q1_tried*cos_q6_tried + r21_from_q1_tried*sin_q6_tried
+        r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
+        sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried
+        cos_q23_tried = cos_q2_tried*cos_q3_tried - sin_q2_tried*sin_q3_tried
+        r31_from_q123_tried = goal_r31*cos_q23_tried + r11_from_q1_tried*sin_q23_tried
+        r12_from_q1_tried = goal_r12*cos_q1_tried + goal_r22*sin_q1_tried
+        r32_from_q123_tried = goal_r32*cos_q23_tried + r12_from_q1_tried*sin_q23_tried
+        r32_from_q123_before_q6_tried = r32_from_q123_tried*cos_q6_tried + r31_from_q123_tried*sin_q6_tried
+        r13_from_q1_tried = goal_r13*cos_q1_tried + goal_r23*sin_q1_tried
+        r13_from_q123_tried = r13_from_q1_tried*cos_q23_tried - goal_r33*sin_q23_tried
+        r23_from_q1_tried = goal_r23*cos_q1_tried - goal_r13*sin_q1_tried
+        r33_from_q123_tried = goal_r33*cos_q23_tried + r13_from_q1_tried*sin_q23_tried
+        r33_from_q1234_tried = (
+            r22_from_q123_before_q6_tried*r33_from_q123_tried - r23_from_q1_tried*r32_from_q123_before_q6_tried
+        )
+        # Newton's method on the closure
+        q1, q2, q3, q4, q5, q6, passes = (
+            arctan2(sin_q1_tried + 0.0, cos_q1_tried + 0.0),
+            arctan2(sin_q2_tried + 0.0, cos_q2_tried + 0.0),
+            arctan2(sin_q3_tried + 0.0, cos_q3_tried + 0.0),
+            arctan2(r32_from_q123_before_q6_tried + 0.0, r22_from_q123_before_q6_tried + 0.0),
+            arctan2(r13_from_q123_tried + 0.0, r33_from_q1234_tried + 0.0),
+            arctan2(sin_q6_tried + 0.0, cos_q6_tried + 0.0),
+            0.0,
+        )
+        for _ in range(4):
+            cos_q1 = cos(q1)
+            cos_q23 = cos(q2 + q3)
+            r11_at_q23 = cos_q1*cos_q23
+            sin_q1 = sin(q1)
+            sin_q23 = sin(q2 + q3)
+            r13_at_q23 = cos_q1*sin_q23
+            sin_q4 = sin(q4)
+            cos_q4 = cos(q4)
+            r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
+            sin_q5 = sin(q5)
+            cos_q5 = cos(q5)
+            r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5
+            x_at_q2 = a1*cos_q1
+            sin_q2 = sin(q2)
+            r13_at_q2 = cos_q1*sin_q2
+            x_at_q3 = x_at_q2 + a2*r13_at_q2
+            x_at_q4 = x_at_q3 + a3*r13_at_q23 + d4*r11_at_q23
+            r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
+            x_at_q6 = x_at_q4 + j6_offset_x*r11_at_q5
+            x = x_at_q6 + d6*r13_at_q5
+            error_1 = (goal_x - x)/machine_scale
+            r21_at_q23 = cos_q23*sin_q1
+            r23_at_q23 = sin_q1*sin_q23
+            r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
+            r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5
+            y_at_q2 = a1*sin_q1
+            r23_at_q2 = sin_q1*sin_q2
+            y_at_q3 = y_at_q2 + a2*r23_at_q2
+            y_at_q4 = y_at_q3 + a3*r23_at_q23 + d4*r21_at_q23
+            r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
+            y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
+            y = y_at_q6 + d6*r23_at_q5
+            error_2 = (goal_y - y)/machine_scale
+            r33_at_q4 = cos_q23*cos_q4
+            r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
+            cos_q2 = cos(q2)
+            z_at_q3 = d1 + a2*cos_q2
+            z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
+            r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
+            z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
+            z = z_at_q6 + d6*r33_at_q5
+            error_3 = (goal_z - z)/machine_scale
+            r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
+            sin_q6 = sin(q6)
+            cos_q6 = cos(q6)
+            r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
+            r32_at_q4 = cos_q23*sin_q4
+            r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
+            r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
+            r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
+            error_4 = (
+                0.5*goal_r31*r21_at_q6 + 0.5*goal_r32*r22_at_q6 + 0.5*goal_r33*r23_at_q5 - 0.5*goal_r21*r31_at_q6
+                - 0.5*goal_r22*r32_at_q6 - 0.5*goal_r23*r33_at_q5
+            )
+            r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
+            r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
+            r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
+            error_5 = (
+                0.5*goal_r11*r31_at_q6 + 0.5*goal_r12*r32_at_q6 + 0.5*goal_r13*r33_at_q5 - 0.5*goal_r31*r11_at_q6
+                - 0.5*goal_r32*r12_at_q6 - 0.5*goal_r33*r13_at_q5
+            )
+            error_6 = (
+                0.5*goal_r21*r11_at_q6 + 0.5*goal_r22*r12_at_q6 + 0.5*goal_r23*r13_at_q5 - 0.5*goal_r11*r21_at_q6
+                - 0.5*goal_r12*r22_at_q6 - 0.5*goal_r13*r23_at_q5
+            )
+            # of the pose, in lengths of the machine and radians
+            error = sqrt(
+                error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6
+            )
+            # the step that lets the error vanish
+            determinant, step_q1, step_q2, step_q3, step_q4, step_q5, step_q6 = solve(
+                (
+                    (
+                        -y/machine_scale, (z - d1)*cos_q1/machine_scale, (z - z_at_q3)*cos_q1/machine_scale,
+                        (r21_at_q23*(z - z_at_q4) + (y - y_at_q4)*sin_q23)/machine_scale,
+                        (r22_at_q4*(z - z_at_q4) - r32_at_q4*(y - y_at_q4))/machine_scale,
+                        (r23_at_q5*(z - z_at_q6) - r33_at_q5*(y - y_at_q6))/machine_scale,
+                    ),
+                    (
+                        x/machine_scale,
+                        (z - d1)*sin_q1/machine_scale,
+                        (z - z_at_q3)*sin_q1/machine_scale,
+                        (-r11_at_q23*(z - z_at_q4) - (x - x_at_q4)*sin_q23)/machine_scale,
+                        (r32_at_q4*(x - x_at_q4) - r12_at_q4*(z - z_at_q4))/machine_scale,
+                        (r33_at_q5*(x - x_at_q6) - r13_at_q5*(z - z_at_q6))/machine_scale,
+                    ),
+                    (
+                        0.0,
+                        (-(x - x_at_q2)*cos_q1 - (y - y_at_q2)*sin_q1)/machine_scale,
+                        (-(x - x_at_q3)*cos_q1 - (y - y_at_q3)*sin_q1)/machine_scale,
+                        (r11_at_q23*(y - y_at_q4) - r21_at_q23*(x - x_at_q4))/machine_scale,
+                        (r12_at_q4*(y - y_at_q4) - r22_at_q4*(x - x_at_q4))/machine_scale,
+                        (r13_at_q5*(y - y_at_q6) - r23_at_q5*(x - x_at_q6))/machine_scale,
+                    ),
+                    (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
+                    (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
+                    (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
+                ),
+                ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+            )
+            size = (
+                step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5 + step_q6*step_q6
+            )
+            taken = 1.0 if size <= error else 0.0  # whether the error becomes smaller
+            if (error <= 1e-14) or (passes > 2.5) or (taken < 0.5):
+                break
+            q1 = q1 + step_q1*taken
+            q2 = q2 + step_q2*taken
+            q3 = q3 + step_q3*taken
+            q4 = q4 + step_q4*taken
+            q5 = q5 + step_q5*taken
+            q6 = q6 + step_q6*taken
+            passes = 1.0 + passes
+        else:
+            return Status.UNREACHABLE
+        fits = (
+            1.0
+            if (error <= 1e-10) and ((sin(q4) if abs(j6_offset_x) > 0.0 else cos(q5))*wanted_wrist >= -1e-6) and ((a3*sin(q3) + cos(q3)*d4)*wanted_elbow/machine_scale >= -1e-6) and (
+                -0.5*determinant*machine_scale*machine_scale*wanted_crossing*wanted_elbow*wanted_shoulder
+                /(sqrt(a3*a3 + d4*d4)*a2) >= -1e-6
+            ) and ((a1 + a2*sin(q2) + a3*sin(q2 + q3) + cos(q2 + q3)*d4)*wanted_shoulder/machine_scale >= -1e-6)
+            else 0.0
+        )
+        return (fits, q1, q2, q3, q4, q5, q6)
+
+    def _find_root(self, given: Reals) -> Reals | Status:
+        """The joints at the root that is nearest to the start; zeros where none is looked for."""
+        (
+            free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
+            goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
+            wanted_wrist,
+        ) = given
+        # the search along A6
+        found = nearest_root(
+            self._try_joint,
+            self._finish_root,
+            start,
+            looked_for > 0.5,
+            (
+                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
+                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,
+            ),
+            (
+                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
+                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_crossing, wanted_elbow,
+                wanted_shoulder, wanted_wrist,
+            ),
+            7,
+            self._array_programs().try_joint,
+        )
+        found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
+        return (found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6)
+
+    def _search_given(
+        self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+    ) -> Reals | Status:
+        """What the search is given."""
+        x, y, z = position
+        (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
+        sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
+        ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
+        k = self._constants
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a6 = k.offset_a6
+        searched = k.searched
+        # numbers of reasonable size
+        if not (
+            -1e9 <= r11 <= 1e9 and -1e9 <= r12 <= 1e9 and -1e9 <= r13 <= 1e9 and -1e9 <= r21 <= 1e9
+            and -1e9 <= r22 <= 1e9 and -1e9 <= r23 <= 1e9 and -1e9 <= r31 <= 1e9 and -1e9 <= r32 <= 1e9
+            and -1e9 <= r33 <= 1e9 and -1e9 <= ref_a1 <= 1e9 and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9
+            and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9 and -1e9 <= ref_a6 <= 1e9 and -1e9 <= x <= 1e9
+            and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9
+        ):
+            return Status.BAD_INPUT
+        free_a1 = (ref_a1 - offset_a1)*DEGREE
+        free_a2 = (ref_a2 - offset_a2)*DEGREE
+        free_a6 = (ref_a6 - offset_a6)*DEGREE
+        return (
+            free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, free_a6, sigma_crossing,
+            sigma_elbow, sigma_shoulder, sigma_wrist,
+        )
+
+    def _from_joints(self, joints: Reals, turns: Reals, reference: Reals) -> Reals | Status:
+        """The axes of joints."""
+        q1, q2, q3, q4, q5, q6 = joints
+        turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
+        ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
+        k = self._constants
+        mid_a1 = k.mid_a1
+        mid_a2 = k.mid_a2
+        mid_a3 = k.mid_a3
+        mid_a4 = k.mid_a4
+        mid_a5 = k.mid_a5
+        mid_a6 = k.mid_a6
+        offset_a1 = k.offset_a1
+        offset_a2 = k.offset_a2
+        offset_a3 = k.offset_a3
+        offset_a4 = k.offset_a4
+        offset_a5 = k.offset_a5
+        offset_a6 = k.offset_a6
+        single_a1 = k.single_a1
+        single_a2 = k.single_a2
+        single_a3 = k.single_a3
+        single_a4 = k.single_a4
+        single_a5 = k.single_a5
+        single_a6 = k.single_a6
+        open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
+        near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
+        axis_a1 = offset_a1 + q1/DEGREE  # A1: its turn
+        if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
+            axis_a1 = nearest_period(axis_a1, near_a1)
+        open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
+        near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
+        axis_a2 = offset_a2 + q2/DEGREE  # A2: its turn
+        if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
+            axis_a2 = nearest_period(axis_a2, near_a2)
+        open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
+        near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
+        axis_a3 = offset_a3 + q3/DEGREE  # A3: its turn
+        if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
+            axis_a3 = nearest_period(axis_a3, near_a3)
+        open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
+        near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
+        axis_a4 = offset_a4 + q4/DEGREE  # A4: its turn
+        if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
+            axis_a4 = nearest_period(axis_a4, near_a4)
+        open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
+        near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
+        axis_a5 = offset_a5 + q5/DEGREE  # A5: its turn
+        if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
+            axis_a5 = nearest_period(axis_a5, near_a5)
+        open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
+        near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
+        axis_a6 = offset_a6 + q6/DEGREE  # A6: its turn
+        if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
+            axis_a6 = nearest_period(axis_a6, near_a6)
+        return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
 
     def _forward(self, axes: Reals) -> Pose | Status:
         """Position, rotation and the signed margin of every branch."""
@@ -497,7 +1057,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         d1 = k.d1
         d4 = k.d4
         d6 = k.d6
-        effective_q3_closed = k.effective_q3_closed
+        effective_q3_tried = k.effective_q3_tried
         j6_offset_x = k.j6_offset_x
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
@@ -577,12 +1137,13 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         wrist_x_tried = x + j6_offset_x*r12_at_q6*sin_q6 - d6*r13_at_q5 - j6_offset_x*r11_at_q6*cos_q6
         wrist_y_tried = y + j6_offset_x*r22_at_q6*sin_q6 - d6*r23_at_q5 - j6_offset_x*r21_at_q6*cos_q6
         margin_shoulder_tried = (wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)/machine_scale
+        sin_q3_tried = sin(q3)
+        cos_q3_tried = cos(q3)
+        margin_elbow_tried = (a3*sin_q3_tried + d4*cos_q3_tried)/effective_q3_tried
         if searched > 0.5:
             branch_shoulder = margin_shoulder_tried
-            sin_q3 = sin(q3)
-            cos_q3 = cos(q3)
-            branch_elbow = (a3*sin_q3 + d4*cos_q3)/machine_scale
-            branch_wrist = sin_q4
+            branch_elbow = margin_elbow_tried
+            branch_wrist = (sin_q4 if abs(j6_offset_x) > 0.0 else cos_q5)/machine_scale
         else:
             wrist_x_closed = x - d6*r13_at_q5  # the point that the last joints turn about
             wrist_y_closed = y - d6*r23_at_q5
@@ -590,7 +1151,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             branch_shoulder = margin_shoulder_closed
             sin_q3_closed = sin(q3)
             cos_q3_closed = cos(q3)
-            margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_closed
+            margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_tried
             branch_elbow = margin_elbow_closed
             branch_wrist = cos_q5
         # of the Jacobian, its positions in lengths of the machine
@@ -625,11 +1186,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             (),
         )
         branch_crossing = (
-            0.5*(
+            -0.5*(1.0 if margin_elbow_tried >= 0.0 else -1.0)*(
                 1.0
                 if margin_shoulder_tried >= 0.0
                 else -1.0
-            )*(1.0 if sin_q4 >= 0.0 else -1.0)*determinant*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
+            )*determinant*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
             if searched > 0.5
             else 1.0
         )
@@ -699,17 +1260,15 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             (r31_at_q6, r32_at_q6, r33_at_q5),
         )
 
-    def _ranked(
+    def _branch(
         self, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
-        number: Reals,
     ) -> Reals | Status:
-        """The axes of one branch: of its solutions the one that has so many others nearer to the reference."""
+        """The axes of one branch, periods included, limits not."""
         x, y, z = position
         (r11, r12, r13), (r21, r22, r23), (r31, r32, r33) = rotation
         sigma_shoulder, sigma_elbow, sigma_wrist, sigma_crossing = signs
         turn_a1, turn_a2, turn_a3, turn_a4, turn_a5, turn_a6 = turns
         ref_a1, ref_a2, ref_a3, ref_a4, ref_a5, ref_a6 = reference
-        (rank,) = number
         k = self._constants
         a1 = k.a1
         a2 = k.a2
@@ -717,8 +1276,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         d1 = k.d1
         d4 = k.d4
         d6 = k.d6
-        effective_q3_closed = k.effective_q3_closed
-        j6_offset_x = k.j6_offset_x
+        effective_q3_tried = k.effective_q3_tried
         machine_scale = k.machine_scale
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
@@ -739,7 +1297,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
-        swing_scale_q3_closed = k.swing_scale_q3_closed
+        swing_scale_q3_tried = k.swing_scale_q3_tried
         # numbers of reasonable size
         if not (
             -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
@@ -760,201 +1318,39 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
         # 1 - cosine, times the scale
-        one_less_cos_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
+        one_less_cos_q3_closed = (a2 + effective_q3_tried + reach_closed)*(a2 + effective_q3_tried - reach_closed)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
+        one_plus_cos_q3_closed = (effective_q3_tried + reach_closed - a2)*(a2 + reach_closed - effective_q3_tried)
         sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
         # q3: out of reach
-        if not ((searched > 0.5) or (sine_square_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed)):
+        if not ((searched > 0.5) or (sine_square_q3_closed >= -1e-12*swing_scale_q3_tried*swing_scale_q3_tried)):
             return Status.UNREACHABLE
         # without the offset there is no second crossing
         if not ((searched > 0.5) or (sigma_crossing > 0.0)):
             return Status.UNREACHABLE
-        # without the offset a branch has one solution
-        if not ((searched > 0.5) or (rank < 0.5)):
-            return Status.UNREACHABLE
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         free_a2 = (ref_a2 - offset_a2)*DEGREE
-        free_a5 = (ref_a5 - offset_a5)*DEGREE
         free_a6 = (ref_a6 - offset_a6)*DEGREE
-        # search along the joint, from its reference outwards
-        tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, touching, passed_ = (
-            free_a6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+        # A6: where it meets what is left of the closure
+        found = self._find_root(
+            (
+                free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, free_a6,
+                sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist,
+            )
         )
-        for _ in range(1800):
-            cos_q6_tried = cos(tried)
-            sin_q6_tried = sin(tried)
-            # the point that the last joints turn about
-            wrist_x_tried = x + j6_offset_x*r12*sin_q6_tried - d6*r13 - j6_offset_x*r11*cos_q6_tried
-            wrist_y_tried = y + j6_offset_x*r22*sin_q6_tried - d6*r23 - j6_offset_x*r21*cos_q6_tried
-            # q1: of the point from its axis
-            distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
-            along_q1_tried = sigma_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
-            length_q1_tried = distance_q1_tried if distance_q1_tried > 1e-11*machine_scale else 1.0
-            # its reference where it is free
-            cos_q1_tried = along_q1_tried/length_q1_tried if distance_q1_tried > 1e-11*machine_scale else cos(free_a1)
-            across_q1_tried = sigma_shoulder*wrist_y_tried
-            sin_q1_tried = across_q1_tried/length_q1_tried if distance_q1_tried > 1e-11*machine_scale else sin(free_a1)
-            r21_from_q1_tried = r21*cos_q1_tried - r11*sin_q1_tried
-            r22_from_q1_tried = r22*cos_q1_tried - r12*sin_q1_tried
-            r22_from_q1_before_q6_tried = r22_from_q1_tried*cos_q6_tried + r21_from_q1_tried*sin_q6_tried
-            r23_from_q1_tried = r23*cos_q1_tried - r13*sin_q1_tried
-            r21_from_q1_before_q6_tried = r21_from_q1_tried*cos_q6_tried - r22_from_q1_tried*sin_q6_tried
-            # q5: direction and distance of a point
-            radius_q5_tried = sqrt(
-                r21_from_q1_before_q6_tried*r21_from_q1_before_q6_tried + r23_from_q1_tried*r23_from_q1_tried
-            )
-            q5_radius_of_q4_tried = radius_q5_tried*sigma_wrist
-            r32_from_q1_before_q6_tried = r32*cos_q6_tried + r31*sin_q6_tried
-            along_q5_tried = -r23_from_q1_tried*sigma_wrist  # q5: polar angle in the r23 and r21 equations
-            length_q5_tried = radius_q5_tried if radius_q5_tried > 1e-11 else 1.0
-            # its reference where it is free
-            cos_q5_tried = along_q5_tried/length_q5_tried if radius_q5_tried > 1e-11 else cos(free_a5)
-            across_q5_tried = r21_from_q1_before_q6_tried*sigma_wrist
-            sin_q5_tried = across_q5_tried/length_q5_tried if radius_q5_tried > 1e-11 else sin(free_a5)
-            r31_from_q1_before_q6_tried = r31*cos_q6_tried - r32*sin_q6_tried
-            r33_from_q1_before_q56_tried = r33*cos_q5_tried - r31_from_q1_before_q6_tried*sin_q5_tried
-            r33_from_q1_before_q456_tried = (
-                q5_radius_of_q4_tried*r32_from_q1_before_q6_tried
-                + r22_from_q1_before_q6_tried*r33_from_q1_before_q56_tried
-            )
-            r31_from_q1_before_q56_tried = r31_from_q1_before_q6_tried*cos_q5_tried + r33*sin_q5_tried
-            sin_q23_tried = -r31_from_q1_before_q56_tried
-            ahead_q1_tried = distance_q1_tried*sigma_shoulder  # how far ahead of the axis the point is; negative: behind
-            x_from_q1_of_q2_tried = ahead_q1_tried - a1 - a3*sin_q23_tried - d4*r33_from_q1_before_q456_tried
-            wrist_z_tried = z + j6_offset_x*r32*sin_q6_tried - d6*r33 - j6_offset_x*r31*cos_q6_tried
-            z_from_q1_of_q2_tried = wrist_z_tried + d4*sin_q23_tried - d1 - a3*r33_from_q1_before_q456_tried
-            reach_tried = sqrt(x_from_q1_of_q2_tried*x_from_q1_of_q2_tried + z_from_q1_of_q2_tried*z_from_q1_of_q2_tried)
-            along_q2_tried = a2*z_from_q1_of_q2_tried  # q2: linear pair in the x_from_q1 and z_from_q1 equations
-            across_q2_tried = a2*x_from_q1_of_q2_tried
-            length_q2_tried = (
-                sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried)
-                if (reach_tried > 1e-11*machine_scale) and (
-                    across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0
-                )
-                else 1.0
-            )
-            # its reference where it is free
-            cos_q2_tried = along_q2_tried/length_q2_tried if reach_tried > 1e-11*machine_scale else cos(free_a2)
-            sin_q2_tried = across_q2_tried/length_q2_tried if reach_tried > 1e-11*machine_scale else sin(free_a2)
-            # q3: what the sum q23 leaves
-            cos_q3_tried = r33_from_q1_before_q456_tried*cos_q2_tried + sin_q23_tried*sin_q2_tried
-            sin_q3_tried = cos_q2_tried*sin_q23_tried - r33_from_q1_before_q456_tried*sin_q2_tried
-            indicator_elbow_tried = (a3*sin_q3_tried + d4*cos_q3_tried)/machine_scale
-            residual_tried = (reach_tried*reach_tried - a2*a2)/(machine_scale*machine_scale)
-            scanning = 0.0 if closing > 0.5 else 1.0  # or a root is being closed in
-            settled_ = 1.0 if (scanning <= 0.5) and ((closing >= 100.0) or (-1e-14 <= residual_tried <= 1e-14)) else 0.0
-            root_ = (
-                1.0
-                if (-1e-12 <= residual_tried <= 1e-12) and (
-                    indicator_elbow_tried*sigma_elbow >= -1e-9
-                ) and ((settled_ > 0.5) or (touching > 0.5))
-                else 0.0
-            )
-            accepted = 1.0 if (root_ > 0.5) and (passed_ > rank - 0.5) else 0.0
-            first = 0.0 if radius > 0.0 else 1.0
-            previous = ahead if side > 0.0 else behind
-            outward = previous*side*sigma_crossing
-            arrived = residual_tried*side*sigma_crossing
-            # a root lies in between
-            crosses = (
-                1.0
-                if (scanning > 0.5) and (first < 0.5) and (touching < 0.5) and (
-                    ((arrived >= 0.0) and (outward < 0.0) and (side < 0.0))
-                    or ((outward <= 0.0) and (arrived > 0.0) and (side > 0.0))
-                )
-                else 0.0
-            )
-            # go on to the next trial
-            ends = 0.0 if ((scanning <= 0.5) and (settled_ < 0.5)) or ((crosses > 0.5) and (scanning > 0.5)) else 1.0
-            on_low = 1.0 if low_value*residual_tried > 0.0 else 0.0
-            next_low = free_a6 + inner*side if scanning > 0.5 else (tried if on_low > 0.5 else low)
-            next_high = tried if scanning > 0.5 else (high if on_low > 0.5 else tried)
-            next_high_value = residual_tried if scanning > 0.5 else (high_value if on_low > 0.5 else residual_tried)
-            next_low_value = previous if scanning > 0.5 else (residual_tried if on_low > 0.5 else low_value)
-            secant_slope = next_high_value - next_low_value
-            secant_divisor = secant_slope if abs(secant_slope) > 0.0 else 1.0
-            guess = (
-                0.5*next_high + 0.5*next_low
-                if halve > 0.5
-                else next_high - (next_high - next_low)*next_high_value/secant_divisor
-            )
-            apart = abs(ahead - residual_tried)
-            # a root that is crossed
-            simple = 1.0 if (apart > 1e-13) and (apart < 1e-6) and (ahead*residual_tried < 0.0) else 0.0
-            # look at the reference again
-            next_touching = (
-                1.0
-                if (inner <= 0.0) and (radius > 0.0) and (scanning > 0.5) and (crosses < 0.5) and (side < 0.0) and (simple < 0.5) and (touching < 0.5) and (
-                    -1e-12 <= behind <= 1e-12
-                )
-                else 0.0
-            )
-            # the other side, or one step out
-            next_side = (1.0 if first > 0.5 else -side) if (ends > 0.5) and (next_touching < 0.5) else side
-            next_radius = (
-                (DEGREE/33554432.0 if first > 0.5 else (8.0*radius if radius < 15.0*DEGREE/32.0 else 0.5*DEGREE + radius))
-                if (ends > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0))
-                else radius
-            )
-            outer = free_a6 + next_radius*next_side
-            next_tried = free_a6 if next_touching > 0.5 else (outer if ends > 0.5 else guess)
-            next_inner = radius if (ends > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0)) else inner
-            next_closing = (
-                1.0 + closing
-                if ((scanning <= 0.5) and (settled_ < 0.5)) or ((crosses > 0.5) and (scanning > 0.5))
-                else 0.0
-            )
-            next_halve = (
-                1.0
-                if (halve < 0.5) and (((scanning <= 0.5) and (settled_ < 0.5)) or ((crosses > 0.5) and (scanning > 0.5)))
-                else 0.0
-            )
-            next_ahead = (
-                residual_tried
-                if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side > 0.0))
-                else ahead
-            )
-            next_behind = (
-                residual_tried
-                if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0))
-                else behind
-            )
-            next_passed = passed_ + root_
-            if (accepted > 0.5) or (searched < 0.5) or (radius > 180.75*DEGREE):
-                break
-            tried = next_tried
-            radius = next_radius
-            inner = next_inner
-            side = next_side
-            closing = next_closing
-            halve = next_halve
-            low = next_low
-            low_value = next_low_value
-            high = next_high
-            high_value = next_high_value
-            ahead = next_ahead
-            behind = next_behind
-            touching = next_touching
-            passed_ = next_passed
-        else:
-            return Status.UNREACHABLE
+        if isinstance(found, Status):
+            return found
+        found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
         # A6: the search along it finds no root of this branch
-        if not ((accepted > 0.5) or (searched < 0.5)):
+        if not ((found_ > 0.5) or (searched < 0.5)):
             return Status.UNREACHABLE
         if searched > 0.5:
-            cos_q1 = cos_q1_tried
-            sin_q1 = sin_q1_tried
-            cos_q2 = cos_q2_tried
-            sin_q2 = sin_q2_tried
-            cos_q3 = cos_q3_tried
-            sin_q3 = sin_q3_tried
-            cos_q4 = r22_from_q1_before_q6_tried
-            sin_q4 = q5_radius_of_q4_tried
-            cos_q5 = cos_q5_tried
-            sin_q5 = sin_q5_tried
-            cos_q6 = cos_q6_tried
-            sin_q6 = sin_q6_tried
+            q1 = found_q1
+            q2 = found_q2
+            q3 = found_q3
+            q4 = found_q4
+            q5 = found_q5
+            q6 = found_q6
         else:
             # its reference where it is free
             if distance_q1_closed > 1e-11*machine_scale:
@@ -965,8 +1361,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else:
                 cos_q1_closed = cos(free_a1)
                 sin_q1_closed = sin(free_a1)
-            cos_q1 = cos_q1_closed
-            sin_q1 = sin_q1_closed
+            q1 = arctan2(sin_q1_closed + 0.0, cos_q1_closed + 0.0)
             # twice the scale, with the rounding of its parts
             twice_scale_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
             divisor_of_cos_q3_closed = twice_scale_q3_closed if twice_scale_q3_closed > 0.0 else 1.0
@@ -977,8 +1372,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
             # its reference where it is free
             if reach_closed > 1e-11*machine_scale:
-                arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed
-                arm_across_q2_closed = a2 + effective_q3_closed*cos_swing_q3_closed
+                arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed
+                arm_across_q2_closed = a2 + effective_q3_tried*cos_swing_q3_closed
                 # q2: linear pair in the x_from_q1 and z_from_q1 equations
                 along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
                 across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
@@ -992,12 +1387,10 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else:
                 cos_q2_closed = cos(free_a2)
                 sin_q2_closed = sin(free_a2)
-            cos_q2 = cos_q2_closed
-            sin_q2 = sin_q2_closed
-            cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
-            cos_q3 = cos_q3_closed
-            sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
-            sin_q3 = sin_q3_closed
+            q2 = arctan2(sin_q2_closed + 0.0, cos_q2_closed + 0.0)
+            cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_tried + d4*sin_swing_q3_closed/effective_q3_tried
+            sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_tried - d4*cos_swing_q3_closed/effective_q3_tried
+            q3 = arctan2(sin_q3_closed + 0.0, cos_q3_closed + 0.0)
             r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
             sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
             cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
@@ -1005,60 +1398,59 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
             # q4: direction and distance of a point
             radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
-            # its reference where it is free
+            # q4: polar angle in the r33 and r23 equations; its reference where it is free
             if radius_q4_closed > 1e-11:
-                along_q4_closed = r33_from_q123_closed*sigma_wrist  # q4: polar angle in the r33 and r23 equations
-                cos_q4_closed = along_q4_closed/radius_q4_closed
-                across_q4_closed = -r23_from_q1_closed*sigma_wrist
-                sin_q4_closed = across_q4_closed/radius_q4_closed
+                direction_x_q4_closed = r33_from_q123_closed*sigma_wrist
+                direction_y_q4_closed = -r23_from_q1_closed*sigma_wrist
             else:
                 free_a4 = (ref_a4 - offset_a4)*DEGREE
-                cos_q4_closed = cos(free_a4)
-                sin_q4_closed = sin(free_a4)
-            cos_q4 = cos_q4_closed
-            sin_q4 = sin_q4_closed
-            q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
-            cos_q5 = q4_radius_of_q5_closed
+                direction_x_q4_closed = cos(free_a4)
+                direction_y_q4_closed = sin(free_a4)
+            q4 = arctan2(direction_y_q4_closed + 0.0, direction_x_q4_closed + 0.0)
             r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
-            sin_q5 = r13_from_q123_closed
-            r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
-            r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
-            r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
-            r22_from_q1234_closed = r22_from_q1_closed*cos_q4_closed + r32_from_q123_closed*sin_q4_closed
-            cos_q6 = r22_from_q1234_closed
+            q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
+            q5 = arctan2(r13_from_q123_closed + 0.0, q4_radius_of_q5_closed + 0.0)
             r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
             r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
             r31_from_q123_closed = r31*cos_q23_closed + r11_from_q1_closed*sin_q23_closed
-            r21_from_q1234_closed = r21_from_q1_closed*cos_q4_closed + r31_from_q123_closed*sin_q4_closed
-            sin_q6 = r21_from_q1234_closed
+            scaled_r21_from_q1234_closed = (
+                direction_x_q4_closed*r21_from_q1_closed + direction_y_q4_closed*r31_from_q123_closed
+            )
+            r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
+            r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
+            r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
+            scaled_r22_from_q1234_closed = (
+                direction_x_q4_closed*r22_from_q1_closed + direction_y_q4_closed*r32_from_q123_closed
+            )
+            q6 = arctan2(scaled_r21_from_q1234_closed + 0.0, scaled_r22_from_q1234_closed + 0.0)
         open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1  # A1: where its turn is open
         near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-        axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE  # A1: its turn
+        axis_a1 = offset_a1 + q1/DEGREE  # A1: its turn
         if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
             axis_a1 = nearest_period(axis_a1, near_a1)
         open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2  # A2: where its turn is open
         near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-        axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE  # A2: its turn
+        axis_a2 = offset_a2 + q2/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
             axis_a2 = nearest_period(axis_a2, near_a2)
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-        axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE  # A3: its turn
+        axis_a3 = offset_a3 + q3/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
             axis_a3 = nearest_period(axis_a3, near_a3)
         open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4  # A4: where its turn is open
         near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-        axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4 + 0.0)/DEGREE  # A4: its turn
+        axis_a4 = offset_a4 + q4/DEGREE  # A4: its turn
         if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
             axis_a4 = nearest_period(axis_a4, near_a4)
         open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5  # A5: where its turn is open
         near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
-        axis_a5 = offset_a5 + arctan2(sin_q5, cos_q5 + 0.0)/DEGREE  # A5: its turn
+        axis_a5 = offset_a5 + q5/DEGREE  # A5: its turn
         if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
             axis_a5 = nearest_period(axis_a5, near_a5)
         open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6  # A6: where its turn is open
         near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
-        axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE  # A6: its turn
+        axis_a6 = offset_a6 + q6/DEGREE  # A6: its turn
         if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
             axis_a6 = nearest_period(axis_a6, near_a6)
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)
@@ -1306,13 +1698,42 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         """The orientations of the flange."""
         return (((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), (0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
 
+    def _is_searched(self) -> bool:
+        """Whether there is no closed form for this machine."""
+        return self._constants.searched > 0.5
+
+    def _all_joints(self, given: Reals) -> list[Reals]:
+        """The joints at every root of a search."""
+        (
+            free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
+            goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
+            wanted_wrist,
+        ) = given
+        return every_root(
+            self._try_joint,
+            self._finish_root,
+            start,
+            looked_for > 0.5,
+            (
+                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
+                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,
+            ),
+            (
+                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
+                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_crossing, wanted_elbow,
+                wanted_shoulder, wanted_wrist,
+            ),
+            7,
+            self._array_programs().try_joint,
+        )
+
     def _explained(self) -> tuple[Callable[..., Reals | Diagnosis], Callable[[Reals], Diagnosis]]:
         """The branch and the limits, with reasons."""
         from softkin._diagnosis.ac6_rzryryrxryrz_j6offset import branch, limits
 
-        return partial(branch, self._constants), partial(limits, self._constants)
+        return partial(branch, self, self._constants), partial(limits, self._constants)
 
-    def _array_programs(self) -> Programs:
+    def _array_programs(self) -> ArrayPrograms:
         """The programs on arrays."""
         from softkin._array_programs.ac6_rzryryrxryrz_j6offset import ArrayPrograms
 

@@ -15,8 +15,8 @@ from softkin._array import (
     Vector,
     absolute,
     advanced,
+    atan2,
     cos,
-    degrees,
     elsewhere,
     initial,
     nearest_period,
@@ -29,6 +29,7 @@ from softkin._array import (
     solve,
     sqrt,
 )
+from softkin._roots import nearest_root
 from softkin._types import Status
 
 if TYPE_CHECKING:
@@ -42,6 +43,553 @@ class ArrayPrograms(Programs):
         """Programs for a machine."""
         self.constants = constants
 
+    def try_joint(self, given: Reals, status: Codes) -> Reals:
+        """What a trial leaves of the closure, its slope, and what may turn fast with the joint."""
+        (
+            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
+            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_elbow, wanted_shoulder,
+        ) = given
+        k = self.constants
+        a1 = k.a1
+        a2 = k.a2
+        a3 = k.a3
+        d1 = k.d1
+        d4 = k.d4
+        d6 = k.d6
+        effective_q3_tried = k.effective_q3_tried
+        j6_offset_x = k.j6_offset_x
+        machine_scale = k.machine_scale
+        swing_scale_q3_tried = k.swing_scale_q3_tried
+        cos_q6_tried = cos(tried)
+        sin_q6_tried = sin(tried)
+        # the point that the last joints turn about
+        wrist_x_tried = goal_x + goal_r12*j6_offset_x*sin_q6_tried - d6*goal_r13 - goal_r11*j6_offset_x*cos_q6_tried
+        wrist_y_tried = goal_y + goal_r22*j6_offset_x*sin_q6_tried - d6*goal_r23 - goal_r21*j6_offset_x*cos_q6_tried
+        # q1: of the point from its axis
+        distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
+        slope_cos_q6_tried = -sin(tried)
+        slope_sin_q6_tried = cos(tried)
+        slope_wrist_x_tried = goal_r12*j6_offset_x*slope_sin_q6_tried - goal_r11*j6_offset_x*slope_cos_q6_tried
+        slope_wrist_y_tried = goal_r22*j6_offset_x*slope_sin_q6_tried - goal_r21*j6_offset_x*slope_cos_q6_tried
+
+        def elsewhere_cos_q1_tried(free_a1: Real, freed: Real, freed_angle: Real) -> Reals:
+            chosen_q1 = select((freed > -0.5) & (freed < 0.5), freed_angle, free_a1)  # q1, where it is free
+            cos_q1_tried = cos(chosen_q1)  # its reference where it is free
+            sin_q1_tried = sin(chosen_q1)
+            slope_cos_q1_tried = 0.0
+            slope_sin_q1_tried = 0.0
+            return (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried)
+
+        along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
+
+        def elsewhere_length_q1_tried() -> Reals:
+            length_q1_tried = 1.0
+            slope_length_q1_tried = 0.0
+            return (length_q1_tried, slope_length_q1_tried)
+
+        length_q1_tried = distance_q1_tried
+        slope_distance_q1_tried = select(
+            distance_q1_tried > 0.0,
+            (
+                0.5*(2.0*slope_wrist_x_tried*wrist_x_tried + 2.0*slope_wrist_y_tried*wrist_y_tried)
+                /select(distance_q1_tried > 0.0, distance_q1_tried, 1.0)
+            ),
+            0.0,
+        )
+        slope_length_q1_tried = slope_distance_q1_tried
+        length_q1_tried, slope_length_q1_tried = elsewhere(
+            distance_q1_tried > 1e-11*machine_scale,
+            (length_q1_tried, slope_length_q1_tried),
+            elsewhere_length_q1_tried,
+            (),
+        )
+        cos_q1_tried = along_q1_tried/length_q1_tried  # its reference where it is free
+        across_q1_tried = wanted_shoulder*wrist_y_tried
+        sin_q1_tried = across_q1_tried/length_q1_tried
+        slope_along_q1_tried = slope_wrist_x_tried*wanted_shoulder
+        slope_cos_q1_tried = (
+            slope_along_q1_tried/length_q1_tried
+            - along_q1_tried*slope_length_q1_tried/(length_q1_tried*length_q1_tried)
+        )
+        slope_across_q1_tried = slope_wrist_y_tried*wanted_shoulder
+        slope_sin_q1_tried = (
+            slope_across_q1_tried/length_q1_tried
+            - across_q1_tried*slope_length_q1_tried/(length_q1_tried*length_q1_tried)
+        )
+        cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
+            (distance_q1_tried > 1e-11*machine_scale) & ((freed > 0.5) | (freed < -0.5)),
+            (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
+            elsewhere_cos_q1_tried,
+            (free_a1, freed, freed_angle),
+        )
+        r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
+        # what the unknown links must span
+        wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
+        wrist_z_tried = goal_z + goal_r32*j6_offset_x*sin_q6_tried - d6*goal_r33 - goal_r31*j6_offset_x*cos_q6_tried
+        wrist_z_from_q1_tried = wrist_z_tried - d1  # what the unknown links must span
+        reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
+        # 1 - cosine, times the scale
+        one_less_cos_q3_tried = (a2 + effective_q3_tried + reach_tried)*(a2 + effective_q3_tried - reach_tried)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_tried = (effective_q3_tried + reach_tried - a2)*(a2 + reach_tried - effective_q3_tried)
+        # twice the scale, with the rounding of its parts
+        twice_scale_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        slope_wrist_z_tried = goal_r32*j6_offset_x*slope_sin_q6_tried - goal_r31*j6_offset_x*slope_cos_q6_tried
+        slope_wrist_x_from_q1_tried = (
+            slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
+            + slope_sin_q1_tried*wrist_y_tried
+        )
+        slope_reach_tried = select(
+            reach_tried > 0.0,
+            (
+                0.5
+                *(
+                    2.0*slope_wrist_x_from_q1_tried*wrist_x_from_q1_tried
+                    + 2.0*slope_wrist_z_tried*wrist_z_from_q1_tried
+                )
+                /select(reach_tried > 0.0, reach_tried, 1.0)
+            ),
+            0.0,
+        )
+        slope_one_less_cos_q3_tried = (
+            (a2 + effective_q3_tried - reach_tried)*slope_reach_tried
+            - (a2 + effective_q3_tried + reach_tried)*slope_reach_tried
+        )
+        slope_one_plus_cos_q3_tried = (
+            (effective_q3_tried + reach_tried - a2)*slope_reach_tried
+            + (a2 + reach_tried - effective_q3_tried)*slope_reach_tried
+        )
+
+        def elsewhere_divisor_of_cos_q3_tried() -> Reals:
+            divisor_of_cos_q3_tried = 1.0
+            slope_divisor_of_cos_q3_tried = 0.0
+            return (divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried)
+
+        divisor_of_cos_q3_tried = twice_scale_q3_tried
+        slope_twice_scale_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+        slope_divisor_of_cos_q3_tried = slope_twice_scale_q3_tried
+        divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried = elsewhere(
+            twice_scale_q3_tried > 0.0,
+            (divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried),
+            elsewhere_divisor_of_cos_q3_tried,
+            (),
+        )
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
+        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
+        root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
+        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*side*wanted_elbow/divisor_of_cos_q3_tried
+        cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
+        sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
+        slope_cos_swing_q3_tried = (
+            (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried)/divisor_of_cos_q3_tried
+            - (one_plus_cos_q3_tried - one_less_cos_q3_tried)*slope_divisor_of_cos_q3_tried/(
+                divisor_of_cos_q3_tried*divisor_of_cos_q3_tried
+            )
+        )
+        slope_sine_square_q3_tried = (
+            one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
+        )
+        slope_root_of_sin_swing_q3_tried = select(
+            root_of_sin_swing_q3_tried > 0.0,
+            (
+                0.5*slope_sine_square_q3_tried
+                /select(root_of_sin_swing_q3_tried > 0.0, root_of_sin_swing_q3_tried, 1.0)
+            ),
+            0.0,
+        )
+        slope_sin_swing_q3_tried = (
+            2.0*side*slope_root_of_sin_swing_q3_tried*wanted_elbow/divisor_of_cos_q3_tried
+            - 2.0*root_of_sin_swing_q3_tried*side*slope_divisor_of_cos_q3_tried*wanted_elbow/(
+                divisor_of_cos_q3_tried*divisor_of_cos_q3_tried
+            )
+        )
+        slope_cos_q3_tried = (
+            a3*slope_cos_swing_q3_tried/effective_q3_tried + d4*slope_sin_swing_q3_tried/effective_q3_tried
+        )
+        slope_sin_q3_tried = (
+            a3*slope_sin_swing_q3_tried/effective_q3_tried - d4*slope_cos_swing_q3_tried/effective_q3_tried
+        )
+
+        def elsewhere_cos_q2_tried(free_a2: Real, freed: Real, freed_angle: Real) -> Reals:
+            chosen_q2 = select((freed > 0.5) & (freed < 1.5), freed_angle, free_a2)  # q2, where it is free
+            cos_q2_tried = cos(chosen_q2)  # its reference where it is free
+            sin_q2_tried = sin(chosen_q2)
+            slope_cos_q2_tried = 0.0
+            slope_sin_q2_tried = 0.0
+            return (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried)
+
+        arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
+        arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
+        # q2: linear pair in the x_from_q1 and z_from_q1 equations
+        along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
+        across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
+        slope_arm_along_q2_tried = a3*slope_sin_q3_tried + d4*slope_cos_q3_tried
+        slope_arm_across_q2_tried = a3*slope_cos_q3_tried - d4*slope_sin_q3_tried
+        slope_along_q2_tried = (
+            arm_across_q2_tried*slope_wrist_z_tried + arm_along_q2_tried*slope_wrist_x_from_q1_tried
+            + slope_arm_across_q2_tried*wrist_z_from_q1_tried + slope_arm_along_q2_tried*wrist_x_from_q1_tried
+        )
+        slope_across_q2_tried = (
+            arm_across_q2_tried*slope_wrist_x_from_q1_tried + slope_arm_across_q2_tried*wrist_x_from_q1_tried
+            - arm_along_q2_tried*slope_wrist_z_tried - slope_arm_along_q2_tried*wrist_z_from_q1_tried
+        )
+
+        def elsewhere_length_q2_tried() -> Reals:
+            length_q2_tried = 1.0
+            slope_length_q2_tried = 0.0
+            return (length_q2_tried, slope_length_q2_tried)
+
+        root_of_length_q2_tried = sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried)
+        length_q2_tried = root_of_length_q2_tried
+        slope_root_of_length_q2_tried = select(
+            root_of_length_q2_tried > 0.0,
+            (
+                0.5*(2.0*across_q2_tried*slope_across_q2_tried + 2.0*along_q2_tried*slope_along_q2_tried)
+                /select(root_of_length_q2_tried > 0.0, root_of_length_q2_tried, 1.0)
+            ),
+            0.0,
+        )
+        slope_length_q2_tried = slope_root_of_length_q2_tried
+        length_q2_tried, slope_length_q2_tried = elsewhere(
+            (
+                (reach_tried > 1e-11*machine_scale)
+                & (across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0)
+            ),
+            (length_q2_tried, slope_length_q2_tried),
+            elsewhere_length_q2_tried,
+            (),
+        )
+        cos_q2_tried = along_q2_tried/length_q2_tried  # its reference where it is free
+        sin_q2_tried = across_q2_tried/length_q2_tried
+        slope_cos_q2_tried = (
+            slope_along_q2_tried/length_q2_tried
+            - along_q2_tried*slope_length_q2_tried/(length_q2_tried*length_q2_tried)
+        )
+        slope_sin_q2_tried = (
+            slope_across_q2_tried/length_q2_tried
+            - across_q2_tried*slope_length_q2_tried/(length_q2_tried*length_q2_tried)
+        )
+        cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
+            (reach_tried > 1e-11*machine_scale) & ((freed > 1.5) | (freed < 0.5)),
+            (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
+            elsewhere_cos_q2_tried,
+            (free_a2, freed, freed_angle),
+        )
+        sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried
+        cos_q23_tried = cos_q2_tried*cos_q3_tried - sin_q2_tried*sin_q3_tried
+        r11_from_q123_tried = r11_from_q1_tried*cos_q23_tried - goal_r31*sin_q23_tried
+        r12_from_q1_tried = goal_r12*cos_q1_tried + goal_r22*sin_q1_tried
+        r12_from_q123_tried = r12_from_q1_tried*cos_q23_tried - goal_r32*sin_q23_tried
+        r12_from_q123_before_q6_tried = r12_from_q123_tried*cos_q6_tried + r11_from_q123_tried*sin_q6_tried
+        residual_tried = -r12_from_q123_before_q6_tried
+        slope_r11_from_q1_tried = goal_r11*slope_cos_q1_tried + goal_r21*slope_sin_q1_tried
+        slope_sin_q23_tried = (
+            slope_sin_q3_tried*cos_q2_tried + slope_sin_q2_tried*cos_q3_tried + slope_cos_q3_tried*sin_q2_tried
+            + slope_cos_q2_tried*sin_q3_tried
+        )
+        slope_cos_q23_tried = (
+            slope_cos_q3_tried*cos_q2_tried + slope_cos_q2_tried*cos_q3_tried - slope_sin_q3_tried*sin_q2_tried
+            - slope_sin_q2_tried*sin_q3_tried
+        )
+        slope_r11_from_q123_tried = (
+            slope_r11_from_q1_tried*cos_q23_tried + r11_from_q1_tried*slope_cos_q23_tried
+            - goal_r31*slope_sin_q23_tried
+        )
+        slope_r12_from_q1_tried = goal_r12*slope_cos_q1_tried + goal_r22*slope_sin_q1_tried
+        slope_r12_from_q123_tried = (
+            slope_r12_from_q1_tried*cos_q23_tried + r12_from_q1_tried*slope_cos_q23_tried
+            - goal_r32*slope_sin_q23_tried
+        )
+        slope_r12_from_q123_before_q6_tried = (
+            slope_r12_from_q123_tried*cos_q6_tried + r11_from_q123_tried*slope_sin_q6_tried
+            + r12_from_q123_tried*slope_cos_q6_tried + slope_r11_from_q123_tried*sin_q6_tried
+        )
+        slope_residual_tried = -slope_r12_from_q123_before_q6_tried
+        guard = sine_square_q3_tried + 1e-12*swing_scale_q3_tried*swing_scale_q3_tried
+        return (
+            residual_tried, slope_residual_tried, guard, slope_sine_square_q3_tried, cos_q1_tried, sin_q1_tried,
+            cos_q2_tried, sin_q2_tried,
+        )
+
+    def finish_root(self, given: Reals, status: Codes) -> Reals:
+        """The joints at a root, improved by Newton's method, and whether they are wanted."""
+        (
+            free_a1, free_a2, freed, freed_angle, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
+            goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, side, tried, wanted_crossing, wanted_elbow,
+            wanted_shoulder, wanted_wrist,
+        ) = given
+        k = self.constants
+        a1 = k.a1
+        a2 = k.a2
+        a3 = k.a3
+        d1 = k.d1
+        d4 = k.d4
+        d6 = k.d6
+        effective_q3_tried = k.effective_q3_tried
+        j6_offset_x = k.j6_offset_x
+        machine_scale = k.machine_scale
+        cos_q6_tried = cos(tried)
+        sin_q6_tried = sin(tried)
+        # the point that the last joints turn about
+        wrist_x_tried = goal_x + goal_r12*j6_offset_x*sin_q6_tried - d6*goal_r13 - goal_r11*j6_offset_x*cos_q6_tried
+        wrist_y_tried = goal_y + goal_r22*j6_offset_x*sin_q6_tried - d6*goal_r23 - goal_r21*j6_offset_x*cos_q6_tried
+        # q1: of the point from its axis
+        distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
+
+        def elsewhere_cos_q1_tried(free_a1: Real, freed: Real, freed_angle: Real) -> Reals:
+            chosen_q1 = select((freed > -0.5) & (freed < 0.5), freed_angle, free_a1)  # q1, where it is free
+            cos_q1_tried = cos(chosen_q1)  # its reference where it is free
+            sin_q1_tried = sin(chosen_q1)
+            return (cos_q1_tried, sin_q1_tried)
+
+        along_q1_tried = wanted_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
+        length_q1_tried = select(distance_q1_tried > 1e-11*machine_scale, distance_q1_tried, 1.0)
+        cos_q1_tried = along_q1_tried/length_q1_tried  # its reference where it is free
+        across_q1_tried = wanted_shoulder*wrist_y_tried
+        sin_q1_tried = across_q1_tried/length_q1_tried
+        cos_q1_tried, sin_q1_tried = elsewhere(
+            (distance_q1_tried > 1e-11*machine_scale) & ((freed > 0.5) | (freed < -0.5)),
+            (cos_q1_tried, sin_q1_tried),
+            elsewhere_cos_q1_tried,
+            (free_a1, freed, freed_angle),
+        )
+        # what the unknown links must span
+        wrist_x_from_q1_tried = wrist_x_tried*cos_q1_tried + wrist_y_tried*sin_q1_tried - a1
+        wrist_z_tried = goal_z + goal_r32*j6_offset_x*sin_q6_tried - d6*goal_r33 - goal_r31*j6_offset_x*cos_q6_tried
+        wrist_z_from_q1_tried = wrist_z_tried - d1  # what the unknown links must span
+        reach_tried = sqrt(wrist_x_from_q1_tried*wrist_x_from_q1_tried + wrist_z_from_q1_tried*wrist_z_from_q1_tried)
+        # 1 - cosine, times the scale
+        one_less_cos_q3_tried = (a2 + effective_q3_tried + reach_tried)*(a2 + effective_q3_tried - reach_tried)
+        # 1 + cosine, times the scale
+        one_plus_cos_q3_tried = (effective_q3_tried + reach_tried - a2)*(a2 + reach_tried - effective_q3_tried)
+        # twice the scale, with the rounding of its parts
+        twice_scale_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        divisor_of_cos_q3_tried = select(twice_scale_q3_tried > 0.0, twice_scale_q3_tried, 1.0)
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
+        sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
+        sin_swing_q3_tried = 2.0*root(sine_square_q3_tried)*side*wanted_elbow/divisor_of_cos_q3_tried
+        cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
+        sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
+
+        def elsewhere_cos_q2_tried(free_a2: Real, freed: Real, freed_angle: Real) -> Reals:
+            chosen_q2 = select((freed > 0.5) & (freed < 1.5), freed_angle, free_a2)  # q2, where it is free
+            cos_q2_tried = cos(chosen_q2)  # its reference where it is free
+            sin_q2_tried = sin(chosen_q2)
+            return (cos_q2_tried, sin_q2_tried)
+
+        arm_along_q2_tried = a3*sin_q3_tried + d4*cos_q3_tried
+        arm_across_q2_tried = a2 + a3*cos_q3_tried - d4*sin_q3_tried
+        # q2: linear pair in the x_from_q1 and z_from_q1 equations
+        along_q2_tried = arm_across_q2_tried*wrist_z_from_q1_tried + arm_along_q2_tried*wrist_x_from_q1_tried
+        across_q2_tried = arm_across_q2_tried*wrist_x_from_q1_tried - arm_along_q2_tried*wrist_z_from_q1_tried
+        length_q2_tried = select(
+            (
+                (reach_tried > 1e-11*machine_scale)
+                & (across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0)
+            ),
+            sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried),
+            1.0,
+        )
+        cos_q2_tried = along_q2_tried/length_q2_tried  # its reference where it is free
+        sin_q2_tried = across_q2_tried/length_q2_tried
+        cos_q2_tried, sin_q2_tried = elsewhere(
+            (reach_tried > 1e-11*machine_scale) & ((freed > 1.5) | (freed < 0.5)),
+            (cos_q2_tried, sin_q2_tried),
+            elsewhere_cos_q2_tried,
+            (free_a2, freed, freed_angle),
+        )
+        r21_from_q1_tried = goal_r21*cos_q1_tried - goal_r11*sin_q1_tried
+        r22_from_q1_tried = goal_r22*cos_q1_tried - goal_r12*sin_q1_tried
+        r22_from_q123_before_q6_tried = r22_from_q1_tried*cos_q6_tried + r21_from_q1_tried*sin_q6_tried
+        r11_from_q1_tried = goal_r11*cos_q1_tried + goal_r21*sin_q1_tried
+        sin_q23_tried = cos_q2_tried*sin_q3_tried + cos_q3_tried*sin_q2_tried
+        cos_q23_tried = cos_q2_tried*cos_q3_tried - sin_q2_tried*sin_q3_tried
+        r31_from_q123_tried = goal_r31*cos_q23_tried + r11_from_q1_tried*sin_q23_tried
+        r12_from_q1_tried = goal_r12*cos_q1_tried + goal_r22*sin_q1_tried
+        r32_from_q123_tried = goal_r32*cos_q23_tried + r12_from_q1_tried*sin_q23_tried
+        r32_from_q123_before_q6_tried = r32_from_q123_tried*cos_q6_tried + r31_from_q123_tried*sin_q6_tried
+        r13_from_q1_tried = goal_r13*cos_q1_tried + goal_r23*sin_q1_tried
+        r13_from_q123_tried = r13_from_q1_tried*cos_q23_tried - goal_r33*sin_q23_tried
+        r23_from_q1_tried = goal_r23*cos_q1_tried - goal_r13*sin_q1_tried
+        r33_from_q123_tried = goal_r33*cos_q23_tried + r13_from_q1_tried*sin_q23_tried
+        r33_from_q1234_tried = (
+            r22_from_q123_before_q6_tried*r33_from_q123_tried - r23_from_q1_tried*r32_from_q123_before_q6_tried
+        )
+        # Newton's method on the closure
+        q1, q2, q3, q4, q5, q6, passes = initial(
+            atan2(sin_q1_tried, cos_q1_tried),
+            atan2(sin_q2_tried, cos_q2_tried),
+            atan2(sin_q3_tried, cos_q3_tried),
+            atan2(r32_from_q123_before_q6_tried, r22_from_q123_before_q6_tried),
+            atan2(r13_from_q123_tried, r33_from_q1234_tried),
+            atan2(sin_q6_tried, cos_q6_tried),
+            0.0,
+        )
+        for _ in range(4):
+            cos_q1 = cos(q1)
+            cos_q23 = cos(q2 + q3)
+            r11_at_q23 = cos_q1*cos_q23
+            sin_q1 = sin(q1)
+            sin_q23 = sin(q2 + q3)
+            r13_at_q23 = cos_q1*sin_q23
+            sin_q4 = sin(q4)
+            cos_q4 = cos(q4)
+            r13_at_q4 = r13_at_q23*cos_q4 + sin_q1*sin_q4
+            sin_q5 = sin(q5)
+            cos_q5 = cos(q5)
+            r13_at_q5 = r13_at_q4*cos_q5 + r11_at_q23*sin_q5
+            x_at_q2 = a1*cos_q1
+            sin_q2 = sin(q2)
+            r13_at_q2 = cos_q1*sin_q2
+            x_at_q3 = x_at_q2 + a2*r13_at_q2
+            x_at_q4 = x_at_q3 + a3*r13_at_q23 + d4*r11_at_q23
+            r11_at_q5 = r11_at_q23*cos_q5 - r13_at_q4*sin_q5
+            x_at_q6 = x_at_q4 + j6_offset_x*r11_at_q5
+            x = x_at_q6 + d6*r13_at_q5
+            error_1 = (goal_x - x)/machine_scale
+            r21_at_q23 = cos_q23*sin_q1
+            r23_at_q23 = sin_q1*sin_q23
+            r23_at_q4 = r23_at_q23*cos_q4 - cos_q1*sin_q4
+            r23_at_q5 = r23_at_q4*cos_q5 + r21_at_q23*sin_q5
+            y_at_q2 = a1*sin_q1
+            r23_at_q2 = sin_q1*sin_q2
+            y_at_q3 = y_at_q2 + a2*r23_at_q2
+            y_at_q4 = y_at_q3 + a3*r23_at_q23 + d4*r21_at_q23
+            r21_at_q5 = r21_at_q23*cos_q5 - r23_at_q4*sin_q5
+            y_at_q6 = y_at_q4 + j6_offset_x*r21_at_q5
+            y = y_at_q6 + d6*r23_at_q5
+            error_2 = (goal_y - y)/machine_scale
+            r33_at_q4 = cos_q23*cos_q4
+            r33_at_q5 = r33_at_q4*cos_q5 - sin_q23*sin_q5
+            cos_q2 = cos(q2)
+            z_at_q3 = d1 + a2*cos_q2
+            z_at_q4 = z_at_q3 + a3*cos_q23 - d4*sin_q23
+            r31_at_q5 = -cos_q5*sin_q23 - r33_at_q4*sin_q5
+            z_at_q6 = z_at_q4 + j6_offset_x*r31_at_q5
+            z = z_at_q6 + d6*r33_at_q5
+            error_3 = (goal_z - z)/machine_scale
+            r22_at_q4 = cos_q1*cos_q4 + r23_at_q23*sin_q4
+            sin_q6 = sin(q6)
+            cos_q6 = cos(q6)
+            r21_at_q6 = r21_at_q5*cos_q6 + r22_at_q4*sin_q6
+            r32_at_q4 = cos_q23*sin_q4
+            r31_at_q6 = r31_at_q5*cos_q6 + r32_at_q4*sin_q6
+            r22_at_q6 = r22_at_q4*cos_q6 - r21_at_q5*sin_q6
+            r32_at_q6 = r32_at_q4*cos_q6 - r31_at_q5*sin_q6
+            error_4 = (
+                0.5*goal_r31*r21_at_q6 + 0.5*goal_r32*r22_at_q6 + 0.5*goal_r33*r23_at_q5 - 0.5*goal_r21*r31_at_q6
+                - 0.5*goal_r22*r32_at_q6 - 0.5*goal_r23*r33_at_q5
+            )
+            r12_at_q4 = r13_at_q23*sin_q4 - cos_q4*sin_q1
+            r11_at_q6 = r11_at_q5*cos_q6 + r12_at_q4*sin_q6
+            r12_at_q6 = r12_at_q4*cos_q6 - r11_at_q5*sin_q6
+            error_5 = (
+                0.5*goal_r11*r31_at_q6 + 0.5*goal_r12*r32_at_q6 + 0.5*goal_r13*r33_at_q5 - 0.5*goal_r31*r11_at_q6
+                - 0.5*goal_r32*r12_at_q6 - 0.5*goal_r33*r13_at_q5
+            )
+            error_6 = (
+                0.5*goal_r21*r11_at_q6 + 0.5*goal_r22*r12_at_q6 + 0.5*goal_r23*r13_at_q5 - 0.5*goal_r11*r21_at_q6
+                - 0.5*goal_r12*r22_at_q6 - 0.5*goal_r13*r23_at_q5
+            )
+            # of the pose, in lengths of the machine and radians
+            error = sqrt(
+                error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6
+            )
+            # the step that lets the error vanish
+            determinant, step_q1, step_q2, step_q3, step_q4, step_q5, step_q6 = solve(
+                (
+                    (
+                        -y/machine_scale, (z - d1)*cos_q1/machine_scale, (z - z_at_q3)*cos_q1/machine_scale,
+                        (r21_at_q23*(z - z_at_q4) + (y - y_at_q4)*sin_q23)/machine_scale,
+                        (r22_at_q4*(z - z_at_q4) - r32_at_q4*(y - y_at_q4))/machine_scale,
+                        (r23_at_q5*(z - z_at_q6) - r33_at_q5*(y - y_at_q6))/machine_scale,
+                    ),
+                    (
+                        x/machine_scale,
+                        (z - d1)*sin_q1/machine_scale,
+                        (z - z_at_q3)*sin_q1/machine_scale,
+                        (-r11_at_q23*(z - z_at_q4) - (x - x_at_q4)*sin_q23)/machine_scale,
+                        (r32_at_q4*(x - x_at_q4) - r12_at_q4*(z - z_at_q4))/machine_scale,
+                        (r33_at_q5*(x - x_at_q6) - r13_at_q5*(z - z_at_q6))/machine_scale,
+                    ),
+                    (
+                        0.0,
+                        (-(x - x_at_q2)*cos_q1 - (y - y_at_q2)*sin_q1)/machine_scale,
+                        (-(x - x_at_q3)*cos_q1 - (y - y_at_q3)*sin_q1)/machine_scale,
+                        (r11_at_q23*(y - y_at_q4) - r21_at_q23*(x - x_at_q4))/machine_scale,
+                        (r12_at_q4*(y - y_at_q4) - r22_at_q4*(x - x_at_q4))/machine_scale,
+                        (r13_at_q5*(y - y_at_q6) - r23_at_q5*(x - x_at_q6))/machine_scale,
+                    ),
+                    (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
+                    (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
+                    (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
+                ),
+                ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+            )
+            size = (
+                step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5 + step_q6*step_q6
+            )
+            taken = select(size <= error, 1.0, 0.0)  # whether the error becomes smaller
+            done = (error <= 1e-14) | (passes > 2.5) | (taken < 0.5)
+            if settled(done, status):
+                break
+            q1, q2, q3, q4, q5, q6, passes = advanced(
+                done,
+                (q1, q2, q3, q4, q5, q6, passes),
+                (
+                    q1 + step_q1*taken,
+                    q2 + step_q2*taken,
+                    q3 + step_q3*taken,
+                    q4 + step_q4*taken,
+                    q5 + step_q5*taken,
+                    q6 + step_q6*taken,
+                    1.0 + passes,
+                ),
+            )
+        require(status, done, Status.UNREACHABLE)
+        fits = select(
+            (
+                (error <= 1e-10) & (select(absolute(j6_offset_x) > 0.0, sin(q4), cos(q5))*wanted_wrist >= -1e-6)
+                & ((a3*sin(q3) + cos(q3)*d4)*wanted_elbow/machine_scale >= -1e-6)
+                & (
+                    -0.5*determinant*machine_scale*machine_scale*wanted_crossing*wanted_elbow*wanted_shoulder
+                    /(sqrt(a3*a3 + d4*d4)*a2) >= -1e-6
+                )
+                & ((a1 + a2*sin(q2) + a3*sin(q2 + q3) + cos(q2 + q3)*d4)*wanted_shoulder/machine_scale >= -1e-6)
+            ),
+            1.0,
+            0.0,
+        )
+        return (fits, q1, q2, q3, q4, q5, q6)
+
+    def find_root(self, given: Reals, status: Codes) -> Reals:
+        """The joints at the root that is nearest to the start; zeros where none is looked for."""
+        (
+            free_a1, free_a2, goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23, goal_r31, goal_r32,
+            goal_r33, goal_x, goal_y, goal_z, looked_for, start, wanted_crossing, wanted_elbow, wanted_shoulder,
+            wanted_wrist,
+        ) = given
+        # the search along A6
+        found = nearest_root(
+            self.try_joint,
+            self.finish_root,
+            start,
+            looked_for > 0.5,
+            status,
+            (
+                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
+                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_elbow, wanted_shoulder,
+            ),
+            (
+                free_a1, free_a2, "freed", "freed_angle", goal_r11, goal_r12, goal_r13, goal_r21, goal_r22, goal_r23,
+                goal_r31, goal_r32, goal_r33, goal_x, goal_y, goal_z, "side", "tried", wanted_crossing, wanted_elbow,
+                wanted_shoulder, wanted_wrist,
+            ),
+            7,
+        )
+        found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
+        return (found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6)
+
     def forward(self, axes: Reals) -> tuple[tuple[Vector, Rotation, Reals], Codes]:
         """Position, rotation and the signed margin of every branch."""
         axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6 = axes
@@ -52,7 +600,7 @@ class ArrayPrograms(Programs):
         d1 = k.d1
         d4 = k.d4
         d6 = k.d6
-        effective_q3_closed = k.effective_q3_closed
+        effective_q3_tried = k.effective_q3_tried
         j6_offset_x = k.j6_offset_x
         machine_scale = k.machine_scale
         offset_a1 = k.offset_a1
@@ -148,15 +696,16 @@ class ArrayPrograms(Programs):
         wrist_x_tried = x + j6_offset_x*r12_at_q6*sin_q6 - d6*r13_at_q5 - j6_offset_x*r11_at_q6*cos_q6
         wrist_y_tried = y + j6_offset_x*r22_at_q6*sin_q6 - d6*r23_at_q5 - j6_offset_x*r21_at_q6*cos_q6
         margin_shoulder_tried = (wrist_x_tried*cos_q1 + wrist_y_tried*sin_q1)/machine_scale
+        sin_q3_tried = sin(q3)
+        cos_q3_tried = cos(q3)
+        margin_elbow_tried = (a3*sin_q3_tried + d4*cos_q3_tried)/effective_q3_tried
         branch_shoulder: Real
         branch_elbow: Real
         branch_wrist: Real
         if searched > 0.5:
             branch_shoulder = margin_shoulder_tried
-            sin_q3 = sin(q3)
-            cos_q3 = cos(q3)
-            branch_elbow = (a3*sin_q3 + d4*cos_q3)/machine_scale
-            branch_wrist = sin_q4
+            branch_elbow = margin_elbow_tried
+            branch_wrist = select(absolute(j6_offset_x) > 0.0, sin_q4, cos_q5)/machine_scale
         else:
             wrist_x_closed = x - d6*r13_at_q5  # the point that the last joints turn about
             wrist_y_closed = y - d6*r23_at_q5
@@ -164,7 +713,7 @@ class ArrayPrograms(Programs):
             branch_shoulder = margin_shoulder_closed
             sin_q3_closed = sin(q3)
             cos_q3_closed = cos(q3)
-            margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_closed
+            margin_elbow_closed = (a3*sin_q3_closed + d4*cos_q3_closed)/effective_q3_tried
             branch_elbow = margin_elbow_closed
             branch_wrist = cos_q5
         # of the Jacobian, its positions in lengths of the machine
@@ -201,8 +750,8 @@ class ArrayPrograms(Programs):
         branch_crossing = select(
             searched > 0.5,
             (
-                0.5*select(margin_shoulder_tried >= 0.0, 1.0, -1.0)*select(sin_q4 >= 0.0, 1.0, -1.0)*determinant
-                *machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
+                -0.5*select(margin_elbow_tried >= 0.0, 1.0, -1.0)*select(margin_shoulder_tried >= 0.0, 1.0, -1.0)
+                *determinant*machine_scale*machine_scale/(sqrt(a3*a3 + d4*d4)*a2)
             ),
             1.0,
         )
@@ -235,8 +784,7 @@ class ArrayPrograms(Programs):
         d1 = k.d1
         d4 = k.d4
         d6 = k.d6
-        effective_q3_closed = k.effective_q3_closed
-        j6_offset_x = k.j6_offset_x
+        effective_q3_tried = k.effective_q3_tried
         machine_scale = k.machine_scale
         mid_a1 = k.mid_a1
         mid_a2 = k.mid_a2
@@ -257,7 +805,7 @@ class ArrayPrograms(Programs):
         single_a4 = k.single_a4
         single_a5 = k.single_a5
         single_a6 = k.single_a6
-        swing_scale_q3_closed = k.swing_scale_q3_closed
+        swing_scale_q3_tried = k.swing_scale_q3_tried
         status = passed(position)
         # numbers of reasonable size
         require(status, (absolute(x) <= 1e9) & (absolute(y) <= 1e9) & (absolute(z) <= 1e9), Status.BAD_INPUT)
@@ -282,223 +830,45 @@ class ArrayPrograms(Programs):
             wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
         )
         # 1 - cosine, times the scale
-        one_less_cos_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
+        one_less_cos_q3_closed = (a2 + effective_q3_tried + reach_closed)*(a2 + effective_q3_tried - reach_closed)
         # 1 + cosine, times the scale
-        one_plus_cos_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
+        one_plus_cos_q3_closed = (effective_q3_tried + reach_closed - a2)*(a2 + reach_closed - effective_q3_tried)
         sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed  # the square of sine times scale
         # q3: out of reach
         require(
             status,
-            (searched > 0.5) | (sine_square_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed),
+            (searched > 0.5) | (sine_square_q3_closed >= -1e-12*swing_scale_q3_tried*swing_scale_q3_tried),
             Status.UNREACHABLE,
         )
         # without the offset there is no second crossing
         require(status, (searched > 0.5) | (sigma_crossing > 0.0), Status.UNREACHABLE)
         free_a1 = (ref_a1 - offset_a1)*DEGREE
         free_a2 = (ref_a2 - offset_a2)*DEGREE
-        free_a5 = (ref_a5 - offset_a5)*DEGREE
         free_a6 = (ref_a6 - offset_a6)*DEGREE
-        # search along the joint, from its reference outwards
-        tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, touching = initial(
-            free_a6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+        # A6: where it meets what is left of the closure
+        found = self.find_root(
+            (
+                free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, free_a6,
+                sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist,
+            ),
+            status,
         )
-        for _ in range(1800):
-            cos_q6_tried = cos(tried)
-            sin_q6_tried = sin(tried)
-            # the point that the last joints turn about
-            wrist_x_tried = x + j6_offset_x*r12*sin_q6_tried - d6*r13 - j6_offset_x*r11*cos_q6_tried
-            wrist_y_tried = y + j6_offset_x*r22*sin_q6_tried - d6*r23 - j6_offset_x*r21*cos_q6_tried
-            # q1: of the point from its axis
-            distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
-            along_q1_tried = sigma_shoulder*wrist_x_tried  # q1: aimed by the y_from_q1 equation
-            length_q1_tried = select(distance_q1_tried > 1e-11*machine_scale, distance_q1_tried, 1.0)
-            # its reference where it is free
-            cos_q1_tried = select(distance_q1_tried > 1e-11*machine_scale, along_q1_tried/length_q1_tried, cos(free_a1))
-            across_q1_tried = sigma_shoulder*wrist_y_tried
-            sin_q1_tried = select(distance_q1_tried > 1e-11*machine_scale, across_q1_tried/length_q1_tried, sin(free_a1))
-            r21_from_q1_tried = r21*cos_q1_tried - r11*sin_q1_tried
-            r22_from_q1_tried = r22*cos_q1_tried - r12*sin_q1_tried
-            r22_from_q1_before_q6_tried = r22_from_q1_tried*cos_q6_tried + r21_from_q1_tried*sin_q6_tried
-            r23_from_q1_tried = r23*cos_q1_tried - r13*sin_q1_tried
-            r21_from_q1_before_q6_tried = r21_from_q1_tried*cos_q6_tried - r22_from_q1_tried*sin_q6_tried
-            # q5: direction and distance of a point
-            radius_q5_tried = sqrt(
-                r21_from_q1_before_q6_tried*r21_from_q1_before_q6_tried + r23_from_q1_tried*r23_from_q1_tried
-            )
-            q5_radius_of_q4_tried = radius_q5_tried*sigma_wrist
-            r32_from_q1_before_q6_tried = r32*cos_q6_tried + r31*sin_q6_tried
-            along_q5_tried = -r23_from_q1_tried*sigma_wrist  # q5: polar angle in the r23 and r21 equations
-            length_q5_tried = select(radius_q5_tried > 1e-11, radius_q5_tried, 1.0)
-            # its reference where it is free
-            cos_q5_tried = select(radius_q5_tried > 1e-11, along_q5_tried/length_q5_tried, cos(free_a5))
-            across_q5_tried = r21_from_q1_before_q6_tried*sigma_wrist
-            sin_q5_tried = select(radius_q5_tried > 1e-11, across_q5_tried/length_q5_tried, sin(free_a5))
-            r31_from_q1_before_q6_tried = r31*cos_q6_tried - r32*sin_q6_tried
-            r33_from_q1_before_q56_tried = r33*cos_q5_tried - r31_from_q1_before_q6_tried*sin_q5_tried
-            r33_from_q1_before_q456_tried = (
-                q5_radius_of_q4_tried*r32_from_q1_before_q6_tried
-                + r22_from_q1_before_q6_tried*r33_from_q1_before_q56_tried
-            )
-            r31_from_q1_before_q56_tried = r31_from_q1_before_q6_tried*cos_q5_tried + r33*sin_q5_tried
-            sin_q23_tried = -r31_from_q1_before_q56_tried
-            ahead_q1_tried = distance_q1_tried*sigma_shoulder  # how far ahead of the axis the point is; negative: behind
-            x_from_q1_of_q2_tried = ahead_q1_tried - a1 - a3*sin_q23_tried - d4*r33_from_q1_before_q456_tried
-            wrist_z_tried = z + j6_offset_x*r32*sin_q6_tried - d6*r33 - j6_offset_x*r31*cos_q6_tried
-            z_from_q1_of_q2_tried = wrist_z_tried + d4*sin_q23_tried - d1 - a3*r33_from_q1_before_q456_tried
-            reach_tried = sqrt(x_from_q1_of_q2_tried*x_from_q1_of_q2_tried + z_from_q1_of_q2_tried*z_from_q1_of_q2_tried)
-            along_q2_tried = a2*z_from_q1_of_q2_tried  # q2: linear pair in the x_from_q1 and z_from_q1 equations
-            across_q2_tried = a2*x_from_q1_of_q2_tried
-            length_q2_tried = select(
-                (
-                    (reach_tried > 1e-11*machine_scale)
-                    & (across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0)
-                ),
-                sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried),
-                1.0,
-            )
-            # its reference where it is free
-            cos_q2_tried = select(reach_tried > 1e-11*machine_scale, along_q2_tried/length_q2_tried, cos(free_a2))
-            sin_q2_tried = select(reach_tried > 1e-11*machine_scale, across_q2_tried/length_q2_tried, sin(free_a2))
-            # q3: what the sum q23 leaves
-            cos_q3_tried = r33_from_q1_before_q456_tried*cos_q2_tried + sin_q23_tried*sin_q2_tried
-            sin_q3_tried = cos_q2_tried*sin_q23_tried - r33_from_q1_before_q456_tried*sin_q2_tried
-            indicator_elbow_tried = (a3*sin_q3_tried + d4*cos_q3_tried)/machine_scale
-            residual_tried = (reach_tried*reach_tried - a2*a2)/(machine_scale*machine_scale)
-            scanning = select(closing > 0.5, 0.0, 1.0)  # or a root is being closed in
-            settled_ = select((scanning <= 0.5) & ((closing >= 100.0) | (absolute(residual_tried) <= 1e-14)), 1.0, 0.0)
-            accepted = select(
-                (
-                    (absolute(residual_tried) <= 1e-12) & (indicator_elbow_tried*sigma_elbow >= -1e-9)
-                    & ((settled_ > 0.5) | (touching > 0.5))
-                ),
-                1.0,
-                0.0,
-            )
-            first = select(radius > 0.0, 0.0, 1.0)
-            previous = select(side > 0.0, ahead, behind)
-            outward = previous*side*sigma_crossing
-            arrived = residual_tried*side*sigma_crossing
-            # a root lies in between
-            crosses = select(
-                (
-                    (scanning > 0.5) & (first < 0.5) & (touching < 0.5)
-                    & (
-                        ((arrived >= 0.0) & (outward < 0.0) & (side < 0.0))
-                        | ((outward <= 0.0) & (arrived > 0.0) & (side > 0.0))
-                    )
-                ),
-                1.0,
-                0.0,
-            )
-            # go on to the next trial
-            ends = select(((scanning <= 0.5) & (settled_ < 0.5)) | ((crosses > 0.5) & (scanning > 0.5)), 0.0, 1.0)
-            on_low = select(low_value*residual_tried > 0.0, 1.0, 0.0)
-            next_low = select(scanning > 0.5, free_a6 + inner*side, select(on_low > 0.5, tried, low))
-            next_high = select(scanning > 0.5, tried, select(on_low > 0.5, high, tried))
-            next_high_value = select(scanning > 0.5, residual_tried, select(on_low > 0.5, high_value, residual_tried))
-            next_low_value = select(scanning > 0.5, previous, select(on_low > 0.5, residual_tried, low_value))
-            secant_slope = next_high_value - next_low_value
-            secant_divisor = select(absolute(secant_slope) > 0.0, secant_slope, 1.0)
-            guess = select(
-                halve > 0.5, 0.5*next_high + 0.5*next_low,
-                next_high - (next_high - next_low)*next_high_value/secant_divisor,
-            )
-            apart = absolute(ahead - residual_tried)
-            # a root that is crossed
-            simple = select((apart > 1e-13) & (apart < 1e-6) & (ahead*residual_tried < 0.0), 1.0, 0.0)
-            # look at the reference again
-            next_touching = select(
-                (
-                    (inner <= 0.0) & (radius > 0.0) & (scanning > 0.5) & (crosses < 0.5) & (side < 0.0) & (simple < 0.5)
-                    & (touching < 0.5) & (absolute(behind) <= 1e-12)
-                ),
-                1.0,
-                0.0,
-            )
-            # the other side, or one step out
-            next_side = select((ends > 0.5) & (next_touching < 0.5), select(first > 0.5, 1.0, -side), side)
-            next_radius = select(
-                (ends > 0.5) & (touching < 0.5) & ((first > 0.5) | (side < 0.0)),
-                select(
-                    first > 0.5,
-                    DEGREE/33554432.0,
-                    select(radius < 15.0*DEGREE/32.0, 8.0*radius, 0.5*DEGREE + radius),
-                ),
-                radius,
-            )
-            outer = free_a6 + next_radius*next_side
-            next_tried = select(next_touching > 0.5, free_a6, select(ends > 0.5, outer, guess))
-            next_inner = select((ends > 0.5) & (touching < 0.5) & ((first > 0.5) | (side < 0.0)), radius, inner)
-            next_closing = select(
-                ((scanning <= 0.5) & (settled_ < 0.5)) | ((crosses > 0.5) & (scanning > 0.5)),
-                1.0 + closing,
-                0.0,
-            )
-            next_halve = select(
-                (halve < 0.5) & (((scanning <= 0.5) & (settled_ < 0.5)) | ((crosses > 0.5) & (scanning > 0.5))),
-                1.0,
-                0.0,
-            )
-            next_ahead = select(
-                (scanning > 0.5) & (touching < 0.5) & ((first > 0.5) | (side > 0.0)),
-                residual_tried,
-                ahead,
-            )
-            next_behind = select(
-                (scanning > 0.5) & (touching < 0.5) & ((first > 0.5) | (side < 0.0)),
-                residual_tried,
-                behind,
-            )
-            done = (accepted > 0.5) | (searched < 0.5) | (radius > 180.75*DEGREE)
-            if settled(done, status):
-                break
-            tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, touching = advanced(
-                done,
-                (tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, touching),
-                (
-                    next_tried,
-                    next_radius,
-                    next_inner,
-                    next_side,
-                    next_closing,
-                    next_halve,
-                    next_low,
-                    next_low_value,
-                    next_high,
-                    next_high_value,
-                    next_ahead,
-                    next_behind,
-                    next_touching,
-                ),
-            )
-        require(status, done, Status.UNREACHABLE)
+        found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
         # A6: the search along it finds no root of this branch
-        require(status, (accepted > 0.5) | (searched < 0.5), Status.UNREACHABLE)
-        cos_q1: Real
-        sin_q1: Real
-        cos_q2: Real
-        sin_q2: Real
-        cos_q3: Real
-        sin_q3: Real
-        cos_q4: Real
-        sin_q4: Real
-        cos_q5: Real
-        sin_q5: Real
-        cos_q6: Real
-        sin_q6: Real
+        require(status, (found_ > 0.5) | (searched < 0.5), Status.UNREACHABLE)
+        q1: Real
+        q2: Real
+        q3: Real
+        q4: Real
+        q5: Real
+        q6: Real
         if searched > 0.5:
-            cos_q1 = cos_q1_tried
-            sin_q1 = sin_q1_tried
-            cos_q2 = cos_q2_tried
-            sin_q2 = sin_q2_tried
-            cos_q3 = cos_q3_tried
-            sin_q3 = sin_q3_tried
-            cos_q4 = r22_from_q1_before_q6_tried
-            sin_q4 = q5_radius_of_q4_tried
-            cos_q5 = cos_q5_tried
-            sin_q5 = sin_q5_tried
-            cos_q6 = cos_q6_tried
-            sin_q6 = sin_q6_tried
+            q1 = found_q1
+            q2 = found_q2
+            q3 = found_q3
+            q4 = found_q4
+            q5 = found_q5
+            q6 = found_q6
         else:
 
             def elsewhere_cos_q1_closed(free_a1: Real) -> Reals:
@@ -516,8 +886,7 @@ class ArrayPrograms(Programs):
                 elsewhere_cos_q1_closed,
                 (free_a1,),
             )
-            cos_q1 = cos_q1_closed
-            sin_q1 = sin_q1_closed
+            q1 = atan2(sin_q1_closed, cos_q1_closed)
             # twice the scale, with the rounding of its parts
             twice_scale_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
             divisor_of_cos_q3_closed = select(twice_scale_q3_closed > 0.0, twice_scale_q3_closed, 1.0)
@@ -529,8 +898,8 @@ class ArrayPrograms(Programs):
                 sin_q2_closed = sin(free_a2)
                 return (cos_q2_closed, sin_q2_closed)
 
-            arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed
-            arm_across_q2_closed = a2 + effective_q3_closed*cos_swing_q3_closed
+            arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed
+            arm_across_q2_closed = a2 + effective_q3_tried*cos_swing_q3_closed
             # q2: linear pair in the x_from_q1 and z_from_q1 equations
             along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
             across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
@@ -547,12 +916,10 @@ class ArrayPrograms(Programs):
                 elsewhere_cos_q2_closed,
                 (free_a2,),
             )
-            cos_q2 = cos_q2_closed
-            sin_q2 = sin_q2_closed
-            cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
-            cos_q3 = cos_q3_closed
-            sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
-            sin_q3 = sin_q3_closed
+            q2 = atan2(sin_q2_closed, cos_q2_closed)
+            cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_tried + d4*sin_swing_q3_closed/effective_q3_tried
+            sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_tried - d4*cos_swing_q3_closed/effective_q3_tried
+            q3 = atan2(sin_q3_closed, cos_q3_closed)
             r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
             sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
             cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
@@ -561,80 +928,81 @@ class ArrayPrograms(Programs):
             # q4: direction and distance of a point
             radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
 
-            def elsewhere_cos_q4_closed(ref_a4: Real) -> Reals:
+            def elsewhere_direction_x_q4_closed(ref_a4: Real) -> Reals:
                 free_a4 = (ref_a4 - offset_a4)*DEGREE
-                cos_q4_closed = cos(free_a4)  # its reference where it is free
-                sin_q4_closed = sin(free_a4)
-                return (cos_q4_closed, sin_q4_closed)
+                # q4: polar angle in the r33 and r23 equations; its reference where it is free
+                direction_x_q4_closed = cos(free_a4)
+                direction_y_q4_closed = sin(free_a4)
+                return (direction_x_q4_closed, direction_y_q4_closed)
 
-            along_q4_closed = r33_from_q123_closed*sigma_wrist  # q4: polar angle in the r33 and r23 equations
-            cos_q4_closed = along_q4_closed/radius_q4_closed  # its reference where it is free
-            across_q4_closed = -r23_from_q1_closed*sigma_wrist
-            sin_q4_closed = across_q4_closed/radius_q4_closed
-            cos_q4_closed, sin_q4_closed = elsewhere(
+            # q4: polar angle in the r33 and r23 equations; its reference where it is free
+            direction_x_q4_closed = r33_from_q123_closed*sigma_wrist
+            direction_y_q4_closed = -r23_from_q1_closed*sigma_wrist
+            direction_x_q4_closed, direction_y_q4_closed = elsewhere(
                 radius_q4_closed > 1e-11,
-                (cos_q4_closed, sin_q4_closed),
-                elsewhere_cos_q4_closed,
+                (direction_x_q4_closed, direction_y_q4_closed),
+                elsewhere_direction_x_q4_closed,
                 (ref_a4,),
             )
-            cos_q4 = cos_q4_closed
-            sin_q4 = sin_q4_closed
-            q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
-            cos_q5 = q4_radius_of_q5_closed
+            q4 = atan2(direction_y_q4_closed, direction_x_q4_closed)
             r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
-            sin_q5 = r13_from_q123_closed
-            r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
-            r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
-            r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
-            r22_from_q1234_closed = r22_from_q1_closed*cos_q4_closed + r32_from_q123_closed*sin_q4_closed
-            cos_q6 = r22_from_q1234_closed
+            q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
+            q5 = atan2(r13_from_q123_closed, q4_radius_of_q5_closed)
             r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
             r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
             r31_from_q123_closed = r31*cos_q23_closed + r11_from_q1_closed*sin_q23_closed
-            r21_from_q1234_closed = r21_from_q1_closed*cos_q4_closed + r31_from_q123_closed*sin_q4_closed
-            sin_q6 = r21_from_q1234_closed
+            scaled_r21_from_q1234_closed = (
+                direction_x_q4_closed*r21_from_q1_closed + direction_y_q4_closed*r31_from_q123_closed
+            )
+            r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
+            r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
+            r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
+            scaled_r22_from_q1234_closed = (
+                direction_x_q4_closed*r22_from_q1_closed + direction_y_q4_closed*r32_from_q123_closed
+            )
+            q6 = atan2(scaled_r21_from_q1234_closed, scaled_r22_from_q1234_closed)
         open_a1 = select(single_a1 > 0.0, mid_a1, ref_a1)  # A1: where its turn is open
         near_a1 = select(
             absolute(turn_a1) > 0.0,
             select(turn_a1 > 0.0, 360.0*turn_a1 - 360.0, 360.0*turn_a1),
             open_a1,
         )
-        axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
+        axis_a1 = nearest_period(offset_a1 + q1/DEGREE, near_a1)  # A1: its turn
         open_a2 = select(single_a2 > 0.0, mid_a2, ref_a2)  # A2: where its turn is open
         near_a2 = select(
             absolute(turn_a2) > 0.0,
             select(turn_a2 > 0.0, 360.0*turn_a2 - 360.0, 360.0*turn_a2),
             open_a2,
         )
-        axis_a2 = nearest_period(offset_a2 + degrees(sin_q2, cos_q2), near_a2)  # A2: its turn
+        axis_a2 = nearest_period(offset_a2 + q2/DEGREE, near_a2)  # A2: its turn
         open_a3 = select(single_a3 > 0.0, mid_a3, ref_a3)  # A3: where its turn is open
         near_a3 = select(
             absolute(turn_a3) > 0.0,
             select(turn_a3 > 0.0, 360.0*turn_a3 - 360.0, 360.0*turn_a3),
             open_a3,
         )
-        axis_a3 = nearest_period(offset_a3 + degrees(sin_q3, cos_q3), near_a3)  # A3: its turn
+        axis_a3 = nearest_period(offset_a3 + q3/DEGREE, near_a3)  # A3: its turn
         open_a4 = select(single_a4 > 0.0, mid_a4, ref_a4)  # A4: where its turn is open
         near_a4 = select(
             absolute(turn_a4) > 0.0,
             select(turn_a4 > 0.0, 360.0*turn_a4 - 360.0, 360.0*turn_a4),
             open_a4,
         )
-        axis_a4 = nearest_period(offset_a4 + degrees(sin_q4, cos_q4), near_a4)  # A4: its turn
+        axis_a4 = nearest_period(offset_a4 + q4/DEGREE, near_a4)  # A4: its turn
         open_a5 = select(single_a5 > 0.0, mid_a5, ref_a5)  # A5: where its turn is open
         near_a5 = select(
             absolute(turn_a5) > 0.0,
             select(turn_a5 > 0.0, 360.0*turn_a5 - 360.0, 360.0*turn_a5),
             open_a5,
         )
-        axis_a5 = nearest_period(offset_a5 + degrees(sin_q5, cos_q5), near_a5)  # A5: its turn
+        axis_a5 = nearest_period(offset_a5 + q5/DEGREE, near_a5)  # A5: its turn
         open_a6 = select(single_a6 > 0.0, mid_a6, ref_a6)  # A6: where its turn is open
         near_a6 = select(
             absolute(turn_a6) > 0.0,
             select(turn_a6 > 0.0, 360.0*turn_a6 - 360.0, 360.0*turn_a6),
             open_a6,
         )
-        axis_a6 = nearest_period(offset_a6 + degrees(sin_q6, cos_q6), near_a6)  # A6: its turn
+        axis_a6 = nearest_period(offset_a6 + q6/DEGREE, near_a6)  # A6: its turn
         return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6), status
 
     def limits(self, axes: Reals) -> Codes:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from softkin._configuration import turn_inside
 from softkin._scalar import DEGREE, arctan2, cos, nearest_period, sin, sqrt
@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 
 def branch(
-    constants: Constants, position: Vector, rotation: Rotation, signs: Reals, turns: Reals, reference: Reals,
+    self: Any, constants: Constants, position: Vector, rotation: Rotation, signs: Reals, turns: Reals,
+    reference: Reals,
 ) -> Reals | Diagnosis:
     """The axes of one branch, periods included, limits not."""
     x, y, z = position
@@ -29,8 +30,7 @@ def branch(
     d1 = k.d1
     d4 = k.d4
     d6 = k.d6
-    effective_q3_closed = k.effective_q3_closed
-    j6_offset_x = k.j6_offset_x
+    effective_q3_tried = k.effective_q3_tried
     machine_scale = k.machine_scale
     mid_a1 = k.mid_a1
     mid_a2 = k.mid_a2
@@ -51,7 +51,7 @@ def branch(
     single_a4 = k.single_a4
     single_a5 = k.single_a5
     single_a6 = k.single_a6
-    swing_scale_q3_closed = k.swing_scale_q3_closed
+    swing_scale_q3_tried = k.swing_scale_q3_tried
     if not (
         -1e9 <= x <= 1e9 and -1e9 <= y <= 1e9 and -1e9 <= z <= 1e9 and -1e9 <= ref_a1 <= 1e9
         and -1e9 <= ref_a2 <= 1e9 and -1e9 <= ref_a3 <= 1e9 and -1e9 <= ref_a4 <= 1e9 and -1e9 <= ref_a5 <= 1e9
@@ -68,183 +68,39 @@ def branch(
     reach_closed = sqrt(
         wrist_x_from_q1_closed*wrist_x_from_q1_closed + wrist_z_from_q1_closed*wrist_z_from_q1_closed
     )
-    one_less_cos_q3_closed = (a2 + effective_q3_closed + reach_closed)*(a2 + effective_q3_closed - reach_closed)
-    one_plus_cos_q3_closed = (effective_q3_closed + reach_closed - a2)*(a2 + reach_closed - effective_q3_closed)
+    one_less_cos_q3_closed = (a2 + effective_q3_tried + reach_closed)*(a2 + effective_q3_tried - reach_closed)
+    one_plus_cos_q3_closed = (effective_q3_tried + reach_closed - a2)*(a2 + reach_closed - effective_q3_tried)
     sine_square_q3_closed = one_less_cos_q3_closed*one_plus_cos_q3_closed
-    if not ((searched > 0.5) or (sine_square_q3_closed >= -1e-12*swing_scale_q3_closed*swing_scale_q3_closed)):
+    if not ((searched > 0.5) or (sine_square_q3_closed >= -1e-12*swing_scale_q3_tried*swing_scale_q3_tried)):
         missing = (
-            0.5*abs(effective_q3_closed + reach_closed - a2) + 0.5*abs(a2 + reach_closed - effective_q3_closed)
-            + 0.5*abs(a2 + effective_q3_closed - reach_closed) + 0.5*abs(a2 + effective_q3_closed + reach_closed) - a2
-            - effective_q3_closed - reach_closed
+            0.5*abs(effective_q3_tried + reach_closed - a2) + 0.5*abs(a2 + reach_closed - effective_q3_tried)
+            + 0.5*abs(a2 + effective_q3_tried - reach_closed) + 0.5*abs(a2 + effective_q3_tried + reach_closed) - a2
+            - effective_q3_tried - reach_closed
         )
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
     if not ((searched > 0.5) or (sigma_crossing > 0.0)):
         return Diagnosis(Status.UNREACHABLE, "without the offset there is no second crossing", 0.0)
     free_a1 = (ref_a1 - offset_a1)*DEGREE
     free_a2 = (ref_a2 - offset_a2)*DEGREE
-    free_a5 = (ref_a5 - offset_a5)*DEGREE
     free_a6 = (ref_a6 - offset_a6)*DEGREE
-    tried, radius, inner, side, closing, halve, low, low_value, high, high_value, ahead, behind, touching = (
-        free_a6, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+    found = self._find_root(
+        (
+            free_a1, free_a2, r11, r12, r13, r21, r22, r23, r31, r32, r33, x, y, z, searched, free_a6,
+            sigma_crossing, sigma_elbow, sigma_shoulder, sigma_wrist,
+        )
     )
-    for _ in range(1800):
-        cos_q6_tried = cos(tried)
-        sin_q6_tried = sin(tried)
-        wrist_x_tried = x + j6_offset_x*r12*sin_q6_tried - d6*r13 - j6_offset_x*r11*cos_q6_tried
-        wrist_y_tried = y + j6_offset_x*r22*sin_q6_tried - d6*r23 - j6_offset_x*r21*cos_q6_tried
-        distance_q1_tried = sqrt(wrist_x_tried*wrist_x_tried + wrist_y_tried*wrist_y_tried)
-        along_q1_tried = sigma_shoulder*wrist_x_tried
-        length_q1_tried = distance_q1_tried if distance_q1_tried > 1e-11*machine_scale else 1.0
-        cos_q1_tried = along_q1_tried/length_q1_tried if distance_q1_tried > 1e-11*machine_scale else cos(free_a1)
-        across_q1_tried = sigma_shoulder*wrist_y_tried
-        sin_q1_tried = across_q1_tried/length_q1_tried if distance_q1_tried > 1e-11*machine_scale else sin(free_a1)
-        r21_from_q1_tried = r21*cos_q1_tried - r11*sin_q1_tried
-        r22_from_q1_tried = r22*cos_q1_tried - r12*sin_q1_tried
-        r22_from_q1_before_q6_tried = r22_from_q1_tried*cos_q6_tried + r21_from_q1_tried*sin_q6_tried
-        r23_from_q1_tried = r23*cos_q1_tried - r13*sin_q1_tried
-        r21_from_q1_before_q6_tried = r21_from_q1_tried*cos_q6_tried - r22_from_q1_tried*sin_q6_tried
-        radius_q5_tried = sqrt(
-            r21_from_q1_before_q6_tried*r21_from_q1_before_q6_tried + r23_from_q1_tried*r23_from_q1_tried
-        )
-        q5_radius_of_q4_tried = radius_q5_tried*sigma_wrist
-        r32_from_q1_before_q6_tried = r32*cos_q6_tried + r31*sin_q6_tried
-        along_q5_tried = -r23_from_q1_tried*sigma_wrist
-        length_q5_tried = radius_q5_tried if radius_q5_tried > 1e-11 else 1.0
-        cos_q5_tried = along_q5_tried/length_q5_tried if radius_q5_tried > 1e-11 else cos(free_a5)
-        across_q5_tried = r21_from_q1_before_q6_tried*sigma_wrist
-        sin_q5_tried = across_q5_tried/length_q5_tried if radius_q5_tried > 1e-11 else sin(free_a5)
-        r31_from_q1_before_q6_tried = r31*cos_q6_tried - r32*sin_q6_tried
-        r33_from_q1_before_q56_tried = r33*cos_q5_tried - r31_from_q1_before_q6_tried*sin_q5_tried
-        r33_from_q1_before_q456_tried = (
-            q5_radius_of_q4_tried*r32_from_q1_before_q6_tried
-            + r22_from_q1_before_q6_tried*r33_from_q1_before_q56_tried
-        )
-        r31_from_q1_before_q56_tried = r31_from_q1_before_q6_tried*cos_q5_tried + r33*sin_q5_tried
-        sin_q23_tried = -r31_from_q1_before_q56_tried
-        ahead_q1_tried = distance_q1_tried*sigma_shoulder
-        x_from_q1_of_q2_tried = ahead_q1_tried - a1 - a3*sin_q23_tried - d4*r33_from_q1_before_q456_tried
-        wrist_z_tried = z + j6_offset_x*r32*sin_q6_tried - d6*r33 - j6_offset_x*r31*cos_q6_tried
-        z_from_q1_of_q2_tried = wrist_z_tried + d4*sin_q23_tried - d1 - a3*r33_from_q1_before_q456_tried
-        reach_tried = sqrt(x_from_q1_of_q2_tried*x_from_q1_of_q2_tried + z_from_q1_of_q2_tried*z_from_q1_of_q2_tried)
-        along_q2_tried = a2*z_from_q1_of_q2_tried
-        across_q2_tried = a2*x_from_q1_of_q2_tried
-        length_q2_tried = (
-            sqrt(across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried)
-            if (reach_tried > 1e-11*machine_scale) and (
-                across_q2_tried*across_q2_tried + along_q2_tried*along_q2_tried > 0.0
-            )
-            else 1.0
-        )
-        cos_q2_tried = along_q2_tried/length_q2_tried if reach_tried > 1e-11*machine_scale else cos(free_a2)
-        sin_q2_tried = across_q2_tried/length_q2_tried if reach_tried > 1e-11*machine_scale else sin(free_a2)
-        cos_q3_tried = r33_from_q1_before_q456_tried*cos_q2_tried + sin_q23_tried*sin_q2_tried
-        sin_q3_tried = cos_q2_tried*sin_q23_tried - r33_from_q1_before_q456_tried*sin_q2_tried
-        indicator_elbow_tried = (a3*sin_q3_tried + d4*cos_q3_tried)/machine_scale
-        residual_tried = (reach_tried*reach_tried - a2*a2)/(machine_scale*machine_scale)
-        scanning = 0.0 if closing > 0.5 else 1.0
-        settled_ = 1.0 if (scanning <= 0.5) and ((closing >= 100.0) or (-1e-14 <= residual_tried <= 1e-14)) else 0.0
-        accepted = (
-            1.0
-            if (-1e-12 <= residual_tried <= 1e-12) and (
-                indicator_elbow_tried*sigma_elbow >= -1e-9
-            ) and ((settled_ > 0.5) or (touching > 0.5))
-            else 0.0
-        )
-        first = 0.0 if radius > 0.0 else 1.0
-        previous = ahead if side > 0.0 else behind
-        outward = previous*side*sigma_crossing
-        arrived = residual_tried*side*sigma_crossing
-        crosses = (
-            1.0
-            if (scanning > 0.5) and (first < 0.5) and (touching < 0.5) and (
-                ((arrived >= 0.0) and (outward < 0.0) and (side < 0.0))
-                or ((outward <= 0.0) and (arrived > 0.0) and (side > 0.0))
-            )
-            else 0.0
-        )
-        ends = 0.0 if ((scanning <= 0.5) and (settled_ < 0.5)) or ((crosses > 0.5) and (scanning > 0.5)) else 1.0
-        on_low = 1.0 if low_value*residual_tried > 0.0 else 0.0
-        next_low = free_a6 + inner*side if scanning > 0.5 else (tried if on_low > 0.5 else low)
-        next_high = tried if scanning > 0.5 else (high if on_low > 0.5 else tried)
-        next_high_value = residual_tried if scanning > 0.5 else (high_value if on_low > 0.5 else residual_tried)
-        next_low_value = previous if scanning > 0.5 else (residual_tried if on_low > 0.5 else low_value)
-        secant_slope = next_high_value - next_low_value
-        secant_divisor = secant_slope if abs(secant_slope) > 0.0 else 1.0
-        guess = (
-            0.5*next_high + 0.5*next_low
-            if halve > 0.5
-            else next_high - (next_high - next_low)*next_high_value/secant_divisor
-        )
-        apart = abs(ahead - residual_tried)
-        simple = 1.0 if (apart > 1e-13) and (apart < 1e-6) and (ahead*residual_tried < 0.0) else 0.0
-        next_touching = (
-            1.0
-            if (inner <= 0.0) and (radius > 0.0) and (scanning > 0.5) and (crosses < 0.5) and (side < 0.0) and (simple < 0.5) and (touching < 0.5) and (
-                -1e-12 <= behind <= 1e-12
-            )
-            else 0.0
-        )
-        next_side = (1.0 if first > 0.5 else -side) if (ends > 0.5) and (next_touching < 0.5) else side
-        next_radius = (
-            (DEGREE/33554432.0 if first > 0.5 else (8.0*radius if radius < 15.0*DEGREE/32.0 else 0.5*DEGREE + radius))
-            if (ends > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0))
-            else radius
-        )
-        outer = free_a6 + next_radius*next_side
-        next_tried = free_a6 if next_touching > 0.5 else (outer if ends > 0.5 else guess)
-        next_inner = radius if (ends > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0)) else inner
-        next_closing = (
-            1.0 + closing
-            if ((scanning <= 0.5) and (settled_ < 0.5)) or ((crosses > 0.5) and (scanning > 0.5))
-            else 0.0
-        )
-        next_halve = (
-            1.0
-            if (halve < 0.5) and (((scanning <= 0.5) and (settled_ < 0.5)) or ((crosses > 0.5) and (scanning > 0.5)))
-            else 0.0
-        )
-        next_ahead = (
-            residual_tried
-            if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side > 0.0))
-            else ahead
-        )
-        next_behind = (
-            residual_tried
-            if (scanning > 0.5) and (touching < 0.5) and ((first > 0.5) or (side < 0.0))
-            else behind
-        )
-        if (accepted > 0.5) or (searched < 0.5) or (radius > 180.75*DEGREE):
-            break
-        tried = next_tried
-        radius = next_radius
-        inner = next_inner
-        side = next_side
-        closing = next_closing
-        halve = next_halve
-        low = next_low
-        low_value = next_low_value
-        high = next_high
-        high_value = next_high_value
-        ahead = next_ahead
-        behind = next_behind
-        touching = next_touching
-    else:
-        return Diagnosis(Status.UNREACHABLE, "search along the joint, from its reference outwards", 0.0)
-    if not ((accepted > 0.5) or (searched < 0.5)):
+    if isinstance(found, Status):
+        return Diagnosis(found, "", 0.0)
+    found_, found_q1, found_q2, found_q3, found_q4, found_q5, found_q6 = found
+    if not ((found_ > 0.5) or (searched < 0.5)):
         return Diagnosis(Status.UNREACHABLE, "A6: the search along it finds no root of this branch", 0.0)
     if searched > 0.5:
-        cos_q1 = cos_q1_tried
-        sin_q1 = sin_q1_tried
-        cos_q2 = cos_q2_tried
-        sin_q2 = sin_q2_tried
-        cos_q3 = cos_q3_tried
-        sin_q3 = sin_q3_tried
-        cos_q4 = r22_from_q1_before_q6_tried
-        sin_q4 = q5_radius_of_q4_tried
-        cos_q5 = cos_q5_tried
-        sin_q5 = sin_q5_tried
-        cos_q6 = cos_q6_tried
-        sin_q6 = sin_q6_tried
+        q1 = found_q1
+        q2 = found_q2
+        q3 = found_q3
+        q4 = found_q4
+        q5 = found_q5
+        q6 = found_q6
     else:
         if distance_q1_closed > 1e-11*machine_scale:
             along_q1_closed = sigma_shoulder*wrist_x_closed
@@ -254,8 +110,7 @@ def branch(
         else:
             cos_q1_closed = cos(free_a1)
             sin_q1_closed = sin(free_a1)
-        cos_q1 = cos_q1_closed
-        sin_q1 = sin_q1_closed
+        q1 = arctan2(sin_q1_closed + 0.0, cos_q1_closed + 0.0)
         twice_scale_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
         divisor_of_cos_q3_closed = twice_scale_q3_closed if twice_scale_q3_closed > 0.0 else 1.0
         sin_swing_q3_closed = (
@@ -264,8 +119,8 @@ def branch(
         )
         cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
         if reach_closed > 1e-11*machine_scale:
-            arm_along_q2_closed = effective_q3_closed*sin_swing_q3_closed
-            arm_across_q2_closed = a2 + effective_q3_closed*cos_swing_q3_closed
+            arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed
+            arm_across_q2_closed = a2 + effective_q3_tried*cos_swing_q3_closed
             along_q2_closed = arm_across_q2_closed*wrist_z_from_q1_closed + arm_along_q2_closed*wrist_x_from_q1_closed
             across_q2_closed = arm_across_q2_closed*wrist_x_from_q1_closed - arm_along_q2_closed*wrist_z_from_q1_closed
             length_q2_closed = (
@@ -278,12 +133,10 @@ def branch(
         else:
             cos_q2_closed = cos(free_a2)
             sin_q2_closed = sin(free_a2)
-        cos_q2 = cos_q2_closed
-        sin_q2 = sin_q2_closed
-        cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_closed + d4*sin_swing_q3_closed/effective_q3_closed
-        cos_q3 = cos_q3_closed
-        sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_closed - d4*cos_swing_q3_closed/effective_q3_closed
-        sin_q3 = sin_q3_closed
+        q2 = arctan2(sin_q2_closed + 0.0, cos_q2_closed + 0.0)
+        cos_q3_closed = a3*cos_swing_q3_closed/effective_q3_tried + d4*sin_swing_q3_closed/effective_q3_tried
+        sin_q3_closed = a3*sin_swing_q3_closed/effective_q3_tried - d4*cos_swing_q3_closed/effective_q3_tried
+        q3 = arctan2(sin_q3_closed + 0.0, cos_q3_closed + 0.0)
         r13_from_q1_closed = r13*cos_q1_closed + r23*sin_q1_closed
         sin_q23_closed = cos_q2_closed*sin_q3_closed + cos_q3_closed*sin_q2_closed
         cos_q23_closed = cos_q2_closed*cos_q3_closed - sin_q2_closed*sin_q3_closed
@@ -291,58 +144,57 @@ def branch(
         r23_from_q1_closed = r23*cos_q1_closed - r13*sin_q1_closed
         radius_q4_closed = sqrt(r23_from_q1_closed*r23_from_q1_closed + r33_from_q123_closed*r33_from_q123_closed)
         if radius_q4_closed > 1e-11:
-            along_q4_closed = r33_from_q123_closed*sigma_wrist
-            cos_q4_closed = along_q4_closed/radius_q4_closed
-            across_q4_closed = -r23_from_q1_closed*sigma_wrist
-            sin_q4_closed = across_q4_closed/radius_q4_closed
+            direction_x_q4_closed = r33_from_q123_closed*sigma_wrist
+            direction_y_q4_closed = -r23_from_q1_closed*sigma_wrist
         else:
             free_a4 = (ref_a4 - offset_a4)*DEGREE
-            cos_q4_closed = cos(free_a4)
-            sin_q4_closed = sin(free_a4)
-        cos_q4 = cos_q4_closed
-        sin_q4 = sin_q4_closed
-        q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
-        cos_q5 = q4_radius_of_q5_closed
+            direction_x_q4_closed = cos(free_a4)
+            direction_y_q4_closed = sin(free_a4)
+        q4 = arctan2(direction_y_q4_closed + 0.0, direction_x_q4_closed + 0.0)
         r13_from_q123_closed = r13_from_q1_closed*cos_q23_closed - r33*sin_q23_closed
-        sin_q5 = r13_from_q123_closed
-        r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
-        r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
-        r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
-        r22_from_q1234_closed = r22_from_q1_closed*cos_q4_closed + r32_from_q123_closed*sin_q4_closed
-        cos_q6 = r22_from_q1234_closed
+        q4_radius_of_q5_closed = radius_q4_closed*sigma_wrist
+        q5 = arctan2(r13_from_q123_closed + 0.0, q4_radius_of_q5_closed + 0.0)
         r21_from_q1_closed = r21*cos_q1_closed - r11*sin_q1_closed
         r11_from_q1_closed = r11*cos_q1_closed + r21*sin_q1_closed
         r31_from_q123_closed = r31*cos_q23_closed + r11_from_q1_closed*sin_q23_closed
-        r21_from_q1234_closed = r21_from_q1_closed*cos_q4_closed + r31_from_q123_closed*sin_q4_closed
-        sin_q6 = r21_from_q1234_closed
+        scaled_r21_from_q1234_closed = (
+            direction_x_q4_closed*r21_from_q1_closed + direction_y_q4_closed*r31_from_q123_closed
+        )
+        r22_from_q1_closed = r22*cos_q1_closed - r12*sin_q1_closed
+        r12_from_q1_closed = r12*cos_q1_closed + r22*sin_q1_closed
+        r32_from_q123_closed = r32*cos_q23_closed + r12_from_q1_closed*sin_q23_closed
+        scaled_r22_from_q1234_closed = (
+            direction_x_q4_closed*r22_from_q1_closed + direction_y_q4_closed*r32_from_q123_closed
+        )
+        q6 = arctan2(scaled_r21_from_q1234_closed + 0.0, scaled_r22_from_q1234_closed + 0.0)
     open_a1 = mid_a1 if single_a1 > 0.0 else ref_a1
     near_a1 = (360.0*turn_a1 - 360.0 if turn_a1 > 0.0 else 360.0*turn_a1) if abs(turn_a1) > 0.0 else open_a1
-    axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE
+    axis_a1 = offset_a1 + q1/DEGREE
     if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
         axis_a1 = nearest_period(axis_a1, near_a1)
     open_a2 = mid_a2 if single_a2 > 0.0 else ref_a2
     near_a2 = (360.0*turn_a2 - 360.0 if turn_a2 > 0.0 else 360.0*turn_a2) if abs(turn_a2) > 0.0 else open_a2
-    axis_a2 = offset_a2 + arctan2(sin_q2, cos_q2 + 0.0)/DEGREE
+    axis_a2 = offset_a2 + q2/DEGREE
     if not -180.000000001 <= axis_a2 - near_a2 < 179.999999999:
         axis_a2 = nearest_period(axis_a2, near_a2)
     open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3
     near_a3 = (360.0*turn_a3 - 360.0 if turn_a3 > 0.0 else 360.0*turn_a3) if abs(turn_a3) > 0.0 else open_a3
-    axis_a3 = offset_a3 + arctan2(sin_q3, cos_q3 + 0.0)/DEGREE
+    axis_a3 = offset_a3 + q3/DEGREE
     if not -180.000000001 <= axis_a3 - near_a3 < 179.999999999:
         axis_a3 = nearest_period(axis_a3, near_a3)
     open_a4 = mid_a4 if single_a4 > 0.0 else ref_a4
     near_a4 = (360.0*turn_a4 - 360.0 if turn_a4 > 0.0 else 360.0*turn_a4) if abs(turn_a4) > 0.0 else open_a4
-    axis_a4 = offset_a4 + arctan2(sin_q4, cos_q4 + 0.0)/DEGREE
+    axis_a4 = offset_a4 + q4/DEGREE
     if not -180.000000001 <= axis_a4 - near_a4 < 179.999999999:
         axis_a4 = nearest_period(axis_a4, near_a4)
     open_a5 = mid_a5 if single_a5 > 0.0 else ref_a5
     near_a5 = (360.0*turn_a5 - 360.0 if turn_a5 > 0.0 else 360.0*turn_a5) if abs(turn_a5) > 0.0 else open_a5
-    axis_a5 = offset_a5 + arctan2(sin_q5, cos_q5 + 0.0)/DEGREE
+    axis_a5 = offset_a5 + q5/DEGREE
     if not -180.000000001 <= axis_a5 - near_a5 < 179.999999999:
         axis_a5 = nearest_period(axis_a5, near_a5)
     open_a6 = mid_a6 if single_a6 > 0.0 else ref_a6
     near_a6 = (360.0*turn_a6 - 360.0 if turn_a6 > 0.0 else 360.0*turn_a6) if abs(turn_a6) > 0.0 else open_a6
-    axis_a6 = offset_a6 + arctan2(sin_q6, cos_q6 + 0.0)/DEGREE
+    axis_a6 = offset_a6 + q6/DEGREE
     if not -180.000000001 <= axis_a6 - near_a6 < 179.999999999:
         axis_a6 = nearest_period(axis_a6, near_a6)
     return (axis_a1, axis_a2, axis_a3, axis_a4, axis_a5, axis_a6)

@@ -1,0 +1,81 @@
+"""Poses planted next to where branches of a search meet: a joint is moved until a branch's indicator nearly vanishes.
+
+Of every machine and every branch, on all decades of distance, with references far away: how many have no answer on
+their own branch. Random poses never come there, but robots stand there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from derive.kinematics import Kinematics
+from derive.program import Status
+from derive.run import Array, run
+from derive.witness.closure import POSE, Closure
+from derive.witness.samples import SEED, Samples
+
+_TRIED = 24
+"""Values of a joint between which an indicator may change its sign."""
+_HALVED = 60
+_DECADES = 12
+_FREE = 1e-11
+"""Branches with a smaller margin coincide: either byte will do."""
+
+
+def refused_when_planted(kin: Kinematics, closure: Closure, samples: Samples) -> tuple[int, int]:
+    """How many planted poses are refused on their own branch, of how many."""
+    rng = np.random.default_rng(SEED + 7)
+    rows = [r for b in range(len(kin.branches)) for j in range(samples.axes.shape[1]) for r in _near(closure, samples, b, j, rng)]
+    if not rows:
+        return 0, 0
+    index, axes = np.array([k for k, _ in rows]), np.array([a for _, a in rows])
+    planted = replace(samples.take(index), axes=axes)
+    values = planted.values | {joint.axis.name: axes[:, i] for i, joint in enumerate(kin.mechanism.joints)}
+    outputs, _ = run(kin.forward, values)
+    values |= {name: outputs[name] for name in POSE}
+    for i, joint in enumerate(kin.mechanism.joints):
+        values[joint.reference.name] = rng.uniform(-180.0, 180.0, len(axes)) if joint.is_angle else axes[:, i]
+    values |= {joint.turn.name: np.zeros(len(axes)) for joint in kin.period_joints}
+    answered = np.zeros(len(axes), dtype=bool)
+    for side in (1.0, -1.0):  # where branches coincide, on either
+        margins = [outputs[f"branch_{b.name}"] for b in kin.branches]
+        signs = {
+            f"sigma_{b.name}": np.where(np.abs(m) < _FREE, side, np.where(m > 0, 1.0, -1.0))
+            for b, m in zip(kin.branches, margins, strict=True)
+        }
+        answered |= run(kin.branch, values | signs)[1] == Status.OK
+    several = np.sum([np.abs(outputs[f"branch_{b.name}"]) < _FREE for b in kin.branches], axis=0) > 1
+    return int(np.sum(~answered & ~several)), int(np.sum(~several))
+
+
+def _near(closure: Closure, samples: Samples, branch: int, joint: int, rng: np.random.Generator) -> list[tuple[int, Array]]:
+    """A row of every machine with the joint where the branch's indicator vanishes, on either side, and a distance away."""
+    found: list[tuple[int, Array]] = []
+    first = np.unique(samples.machine, return_index=True)[1]
+    part = samples.take(first)
+    around = np.linspace(-180.0, 180.0, _TRIED)
+    before = _indicator(closure, part, branch, joint, np.full(len(part), around[0]))
+    for low, high in zip(around[:-1], around[1:], strict=True):
+        after = _indicator(closure, part, branch, joint, np.full(len(part), high))
+        for k in np.flatnonzero(before * after < 0.0):
+            row = part.take(np.array([k]))
+            ends = [low, high]
+            for _ in range(_HALVED):
+                middle = 0.5 * (ends[0] + ends[1])
+                same = float(_indicator(closure, row, branch, joint, np.array([middle]))[0]) * before[k] > 0.0
+                ends = [middle, ends[1]] if same else [ends[0], middle]
+            for decade in range(0, _DECADES + 1, 3):
+                axes = part.axes[k].copy()
+                axes[joint] = ends[0] + 10.0**-decade * rng.choice([-1.0, 1.0])
+                found.append((int(first[k]), axes))
+        before = after
+    return found
+
+
+def _indicator(closure: Closure, samples: Samples, branch: int, joint: int, value: Array) -> Array:
+    axes = samples.axes.copy()
+    axes[:, joint] = value
+    joints = closure.joints(axes, samples.parameters)[:, :, 0]
+    return np.asarray(closure.indicators(joints, samples.pose, samples.parameters)[:, branch, 0])
