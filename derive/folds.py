@@ -147,7 +147,7 @@ def _motion(later: _Later, sweep: Sweep | None) -> tuple[Let, ...]:
     slope = sp.Add(*[sp.diff(later.value, n) * r for n, r in rates.items() if n in later.value.free_symbols])
     is_steep = sp.Gt(sp.Abs(rate), ROUNDING * size)
     flat = sp.Integer(0 if sweep is None else 1)  # a turn so far that it follows
-    follows = () if sweep is None else (*swept(sweep, names, rates, later.word), *_swept(later))
+    follows = () if sweep is None else (*swept(sweep, later.angle, names, rates, later.word), *_swept(later))
     return (
         *lets,
         Let(value, later.value.xreplace(names), f"a later step needs this of {later.angle.name}: no larger in size than"),

@@ -5,7 +5,7 @@ nearly vanishes and v is known to half of the digits, or not at all, u sweeps ha
 first order of u by v is worth anything. But x sin u = y cos u is linear in cos v and sin v. So u is moved to where a later
 step can reach, and v follows: cos v : sin v = -q : p with p, q what x sin u - y cos u holds of cos v and sin v, of the two
 opposite v that for which (x, y) points along u and not against it. There are two such u, on both sides of the middle of the
-arc, and the one is taken that costs less. What it costs is what is left of v's own equation.
+arc, and the one is taken that costs less: what is left of v's own equation. Where p and q vanish any v gives this u, and v stays.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import sympy as sp
 from derive.algebra import cosine, linear_coefficients, reduce_units, sine
 from derive.arcs import nearest_on_arc
 from derive.problem import Measure
-from derive.program import BOUNDARY, INSIDE, Let, Root, Select, real
+from derive.program import BOUNDARY, FREE_ANGLE, INSIDE, Let, Root, Select, real
 
 Row = tuple[sp.Expr, sp.Expr]
 
@@ -90,7 +90,7 @@ WAYS = ("near", "mirrored")
 
 
 def swept(
-    sweep: Sweep, names: Mapping[sp.Symbol, sp.Expr], rates: Mapping[sp.Symbol, sp.Expr], word: str
+    sweep: Sweep, first: sp.Symbol, names: Mapping[sp.Symbol, sp.Expr], rates: Mapping[sp.Symbol, sp.Expr], word: str
 ) -> tuple[Let, ...]:
     """Where u moves, both ways, and v follows: `<way>_cos_<word>`, `<way>_sin_<word>`; `follows_<word>` where it must.
 
@@ -103,9 +103,9 @@ def swept(
     return (
         _follows(sweep, names, rates, word),
         *nearest_on_arc(target, real(f"value_{word}"), (1 - INSIDE) * real(f"size_{word}"), slopes, before),
-        *_followed(sweep, moved, WAYS[0], word),
+        *_followed(sweep, moved, (names[cosine(first)], names[sine(first)]), WAYS[0], word),
         Let(mirrored, 2 * real(f"centre_{target}") - moved, "the other way to the arc"),
-        *_followed(sweep, mirrored, WAYS[1], word),
+        *_followed(sweep, mirrored, (names[cosine(first)], names[sine(first)]), WAYS[1], word),
     )
 
 
@@ -117,16 +117,19 @@ def _follows(sweep: Sweep, names: Mapping[sp.Symbol, sp.Expr], rates: Mapping[sp
     return Let(real(f"follows_{word}"), Select(is_far, sp.Integer(1), sp.Integer(0)), f"1 where it follows {sweep.angle.name}")
 
 
-def _followed(sweep: Sweep, u: sp.Symbol, way: str, word: str) -> tuple[Let, ...]:
-    """v where u is given."""
-    cos_u, sin_u, p, q, along, radius, length, side, cos_v, sin_v = (
+def _followed(sweep: Sweep, u: sp.Symbol, before: Row, way: str, word: str) -> tuple[Let, ...]:
+    """v where u is given; before: its cosine and sine where it was, which decide where u is free."""
+    cos_u, sin_u, p, q, along, radius, length, turned, side, cos_v, sin_v = (
         real(f"{way}_{name}_{word}")
         for name in (
-            f"cos_{sweep.angle.name}", f"sin_{sweep.angle.name}", "p", "q", "along", "radius", "length", "side", "cos", "sin"
+            f"cos_{sweep.angle.name}", f"sin_{sweep.angle.name}", "p", "q", "along", "radius", "length", "towards", "side", "cos",
+            "sin",
         )
     )  # fmt: skip
     (x1, x2), (y1, y2) = sweep.x, sweep.y
     is_long, one = sp.Gt(radius, BOUNDARY), sp.Integer(1)
+    is_free, (cos_before, sin_before) = sp.Le(sp.Abs(along), FREE_ANGLE * radius), before
+    ahead = Select(is_free, p * sin_before - q * cos_before, along)
     return (
         Let(cos_u, sp.cos(u)),
         Let(sin_u, sp.sin(u)),
@@ -135,7 +138,8 @@ def _followed(sweep: Sweep, u: sp.Symbol, way: str, word: str) -> tuple[Let, ...
         Let(along, p * (x2 * cos_u + y2 * sin_u) - q * (x1 * cos_u + y1 * sin_u)),
         Let(radius, Root(p**2 + q**2)),
         Let(length, Select(is_long, radius, one)),
-        Let(side, Select(sp.Lt(along, 0), -one, one)),
-        Let(cos_v, -q * side / length, "the earlier angle follows"),
-        Let(sin_v, p * side / length),
+        Let(turned, ahead, "of two opposite ways"),
+        Let(side, Select(sp.Lt(turned, 0), -one, one)),
+        Let(cos_v, Select(is_long, -q * side / length, cos_before), "the earlier angle follows"),
+        Let(sin_v, Select(is_long, p * side / length, sin_before), "it stays where every angle gives this one"),
     )

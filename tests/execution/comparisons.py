@@ -16,6 +16,7 @@ from tests.execution.controller import NOT_INITIALIZED, OK, UNREACHABLE, Answer,
 from tests.execution.reasons import compare_reason
 from tests.execution.samples import HALF_TURN, NO_TURN, Bytes, Command, Sample, commands
 from tests.execution.settings import Range, own_limits, together
+from tests.execution.samples import HALF_TURN, NO_TURN, Bytes, Sample, commands
 from tests.execution.twins import Twins
 
 Comparison = Callable[[Twins, Sample], None]
@@ -128,7 +129,7 @@ def own_bytes(twins: Twins, sample: Sample) -> tuple[int, ...]:
     return tuple(answer[1][: twins.robot.BRANCHES]) if status == OK else ()
 
 
-def assert_same_pose(twins: Twins, found: Answer, expected: Answer, command: Command) -> None:
+def assert_same_pose(twins: Twins, found: Answer, expected: Answer, command: object) -> None:
     """Where branches meet the last digit decides half of those of an angle, and perhaps whether another is free.
 
     Both answers must reach the same pose, which is known to all digits.

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from tests.execution.comparisons import COMPARISONS
+from tests.execution.comparisons import COMPARISONS, assert_same_pose
 from tests.execution.controller import OK
 from tests.execution.samples import NO_TURN, Sample, coinciding, near
 from tests.execution.twins import Twins, twins_from
@@ -21,6 +21,7 @@ MACHINES = ("equal", "random 1")
 METHODS = ("AxesToCartesian", "CartesianToAxes", "AxesToOrientation", "IsSingularity", "Jacobian")
 OFFSET_METHODS = ("AxesToConfiguration_Offset", "CartesianToAxes_Offset")
 FEW = 12
+NEARLY = 1e-3
 EVERY = 7
 """The share of the grid at which the slower comparisons are made."""
 
@@ -117,9 +118,18 @@ def test_where_branches_coincide_the_first_answers(twins: tuple[Twins, ...]) -> 
         opened = one.controller.inverse(position, rotation, written + periods, sample.axes)
         assert opened[0] == OK
         if written.count(3) == 1:
-            assert opened == one.controller.inverse(position, rotation, first + periods, sample.axes)
-            compared += 1
+            found = one.controller.inverse(position, rotation, first + periods, sample.axes)
+            if nearly_singular(one, sample) == 1:
+                assert opened == found
+                compared += 1
+            else:  # what rounding leaves of one root decides half of the digits of the other
+                assert_same_pose(one, opened, found, sample)
     assert compared
+
+
+def nearly_singular(one: Twins, sample: Sample) -> int:
+    """How many margins nearly vanish."""
+    return sum(abs(margin) < NEARLY for margin in one.robot.singularity(sample.axes).margins.values())
 
 
 def singular_samples(one: Twins) -> tuple[Sample, ...]:

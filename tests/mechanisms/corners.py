@@ -30,7 +30,7 @@ from tests.mechanisms.machines import Machine
 Factors = Callable[[Array], Array]
 DISTANCES = (0.0, *(sign * 10.0**-k for k in range(2, 17) for sign in (1, -1)))
 """How far a factor is from zero."""
-STARTS, PASSES = 60, 25
+STARTS, PASSES = 24, 32
 AT = 1e-14
 """A factor that small is zero."""
 STEP = 1e-6
@@ -129,8 +129,12 @@ def _places(machine: Machine, functions: Factors, count: int, rng: Generator) ->
     """Where Newton's method ends that starts anywhere, if all factors vanish there and the machine can be there."""
     axes = _starts(machine, rng)
     for _ in range(PASSES):
-        step = _least(_slopes(machine, functions, axes), functions(axes))
-        axes = axes - _units(machine) * step * np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1), 1e-30))[:, None]
+        moving = np.flatnonzero((functions(axes) != 0.0).any(axis=1))
+        if not len(moving):
+            break
+        step = _least(_slopes(machine, functions, axes[moving]), functions(axes[moving]))
+        length = np.minimum(1.0, LONGEST / np.maximum(np.abs(step).max(axis=1), 1e-30))
+        axes[moving] -= _units(machine) * step * length[:, None]
     good = (np.abs(functions(axes)) < AT).all(axis=1)
     good[good] &= can_be_at(machine, axes[good])
     return axes[good][:count]

@@ -2,82 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from functools import cache
-
 import numpy as np
 import pytest
 import softkin
 from softkin import Status
 
-from derive.catalogue import catalogue
 from derive.mechanism import Mechanism
-from tests.mechanisms.closure import Array
-from tests.mechanisms.corners import DISTANCES, Corner, can_be_at, corners, factor_program
-from tests.mechanisms.loops import loop_machines_of
-from tests.mechanisms.machines import Machine, bare_machine, machine, machines_of
-from tests.mechanisms.robots import KR6_R900, PUMA_560, UR5
+from tests.mechanisms.cornered import APART, KR6_D3, PAIRED, SPECIAL, places, poses
+from tests.mechanisms.corners import factor_program
+from tests.mechanisms.robots import UR5
 
 BOUND = 3e-11
 """Of what is missed: two free angles at their thresholds of 1e-11, either of them a chord of 2."""
-PLACES = 3
-"""Places of every combination of factors."""
-KR6_D3 = {**KR6_R900, "d3": 40.0}
-SPECIAL: dict[str, dict[str, Mapping[str, float]]] = {
-    "Kin_Ac6_ThreeParallel": {
-        "UR5": UR5,
-        "no shift": {**UR5, "d4": 0.0},
-        "equal links": {**UR5, "a3": UR5["a2"]},
-        "equal links, no shift": {**UR5, "a3": UR5["a2"], "d4": 0.0},
-    },
-    "Kin_ArticulatedRobot_6DOF": {
-        "KR6": KR6_R900,
-        "KR6, shifted": KR6_D3,
-        "PUMA": PUMA_560,
-        "straight forearm": {**KR6_D3, "a3": 0.0},
-        "equal links": {**KR6_D3, "a1": 0.0, "a3": 0.0, "a2": 420.0},
-    },
-    "Kin_Ac6_RZRYRYRXRYRZ_J6Offset": {
-        "KR6": {**KR6_R900, "j6_offset_x": 0.0},
-        "equal links": {**KR6_R900, "a1": 0.0, "a3": 0.0, "a2": 420.0, "j6_offset_x": 0.0},
-    },
-}
-"""Dimensions that are sold, and those with which more vanishes at once."""
-SPECIAL["Kin_Pos_RRR"] = {
-    name: {k: v for k, v in given.items() if k != "d6"} for name, given in SPECIAL["Kin_ArticulatedRobot_6DOF"].items()
-}
-APART = {"Kin_P2X_Type1", "MC_KIN_TYPE_12_XY"}
-"""Loops whose factors vanish together only where nothing controls the plate."""
-PAIRED = tuple(m for _, m in catalogue() if not m.is_platform and not m.is_orientation and len(factor_program(m).outputs) > 1)
-
-
-def robots(mechanism: Mechanism) -> Iterator[Machine]:
-    """Machines of one mechanism."""
-    if mechanism.rods:
-        yield from loop_machines_of(mechanism)[1:3]
-        return
-    for name, given in SPECIAL.get(mechanism.name, {}).items():
-        yield machine(mechanism, name, given)
-    if mechanism.search is None:
-        yield from machines_of(mechanism)[-1:]
-        yield bare_machine(mechanism)
-
-
-@cache
-def places(mechanism: Mechanism) -> tuple[tuple[Machine, Corner], ...]:
-    """Corners of two and of three factors."""
-    rng = np.random.default_rng(5)
-    return tuple((one, corner) for one in robots(mechanism) for of in (2, 3) for corner in corners(one, PLACES, rng, of=of))
-
-
-def poses(one: Machine, corner: Corner) -> Array:
-    """Axis values at every distance from a corner: one factor, all, one against the others, and any."""
-    count, rng = len(corner.names), np.random.default_rng(7)
-    ways = [*np.eye(count), np.ones(count), np.array([1.0, -1.0, 1.0])[:count]]
-    axes = np.concatenate([corner.beside(d * way) for d in DISTANCES for way in (*ways, rng.uniform(-1.0, 1.0, count))])
-    return axes[can_be_at(one, axes)]
-
-
 @pytest.fixture(params=PAIRED, ids=lambda m: m.name)
 def paired(request: pytest.FixtureRequest) -> Mechanism:
     """A mechanism with two factors or more."""
@@ -140,6 +76,33 @@ def test_a_shoulder_and_an_elbow_at_once() -> None:
         again, _ = robot.forward(robot.inverse(frame, configuration, axes))
         assert np.abs(np.subtract(again.position, frame.position)).max() < 1e-12 * 1000.0
         assert np.abs(np.subtract(again.rotation, frame.rotation)).max() < 1e-12
+
+
+@pytest.mark.parametrize("beyond", [1e-7, 1e-6, 1e-4])
+def test_what_is_beyond_rounding_is_refused(beyond: float) -> None:
+    """Both singularities at once, and the wrist moved outwards along the stretched arm."""
+    robot = softkin.ArticulatedRobot6DOF(**KR6_D3)
+    axes = (110.0, 1.6345249003522546, 85.23635830927383, -70.0, -30.0, 100.0)
+    (position, rotation), _ = robot.forward(axes)
+    shoulder = np.array([0.0, 0.0, KR6_D3["d1"]])
+    wrist = np.array(position) - KR6_D3["d6"] * np.array(rotation)[:, 2]
+    arm = wrist - shoulder
+    moved = np.array(position) + beyond * 1000.0 * np.array([0.0, 0.0, arm[2]]) / abs(arm[2])
+    for slot in robot.inverse_all((moved, rotation), axes):
+        assert slot.status is Status.UNREACHABLE
+
+
+def test_where_every_first_axis_gives_the_same_wrist_it_stays() -> None:
+    """Two links and nothing else, the wrist on axis 1: what the later angle asks of A1 vanishes."""
+    robot = softkin.Ac6ThreeParallel(a2=-0.425, a3=-0.39225)
+    axes = (-64.96055854774626, 90.0, -8.103500366233181e-25, -151.87194789911305, 179.99999999999997, 68.04331838698822)
+    reference = (-156.53950058712866, -24.24029420008918, 89.1797330998652, -165.0526600834, -69.0371358284223, 61.031977805744)
+    frame, _ = robot.forward(axes)
+    for slot in robot.inverse_all(frame, reference):
+        assert slot.axes is not None
+        again, _ = robot.forward(slot.axes)
+        assert np.abs(np.subtract(again.rotation, frame.rotation)).max() < BOUND
+        assert np.abs(np.subtract(again.position, frame.position)).max() < BOUND
 
 
 @pytest.mark.parametrize("reference", [0.0, 33.0, -120.0, 179.0])
