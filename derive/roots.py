@@ -88,6 +88,8 @@ class Cells:
     base: Reals
     scale: Reals
     curved: NDArray[np.bool_]
+    cuts: Rows
+    """How often it was cut."""
     low: Reals
     high: Reals
     first: Reals
@@ -121,8 +123,8 @@ class Cells:
     def halves(self, trial: Trial, s: Reals) -> Cells:
         """The cells cut at s."""
         middle = self.at(trial, s)
-        left = Cells(self.rows, self.base, self.scale, self.curved, self.low, s, self.first, middle)
-        right = Cells(self.rows, self.base, self.scale, self.curved, s, self.high, middle, self.last)
+        left = replace(self, cuts=self.cuts + 1, high=s, last=middle)
+        right = replace(self, cuts=self.cuts + 1, low=s, first=middle)
         return joined(left, right)
 
 
@@ -138,7 +140,7 @@ def find_roots(trial: Trial, start: Reals) -> At:
     cells = _around(trial, start)
     found = [_vanishing(cells.take(np.arange(len(start))))]
     ends, holding = [cells.take(np.zeros(0, dtype=int))], [cells.take(np.zeros(0, dtype=int))]
-    for number in range(2 * ROUNDS):  # what is closed in on waits until nothing is cut any more: it is one loop for all rows
+    for _ in range(2 * ROUNDS):  # what is closed in on waits until nothing is cut any more: it is one loop for all rows
         if not len(cells):
             cells, ends = _over_the_end(trial, joined(*ends)), ends[:1]
             found.append(_vanishing(cells))
@@ -149,7 +151,7 @@ def find_roots(trial: Trial, start: Reals) -> At:
         holding.append(cells.take(says.holds))
         ends.append(cells.take(says.ends))
         cut = cells.take(says.cut)
-        cells = cut.halves(trial, _where(cut, says.by_guard[says.cut], number))
+        cells = cut.halves(trial, _where(cut, says.by_guard[says.cut]))
         found.append(_vanishing(cells.take(np.arange(len(cut), len(cells)))))
     return _all([*found, *_closed_in(trial, joined(*holding))])
 
@@ -181,7 +183,7 @@ def _around(trial: Trial, start: Reals) -> Cells:
     base = (start[None, :] + width * np.arange(CELLS)[:, None]).ravel()
     zero, one = np.zeros(len(rows)), np.ones(len(rows))
     empty = np.empty((len(rows), 0))
-    cells = Cells(rows, base, np.full(len(rows), width), zero > 0.0, zero, one, empty, empty)
+    cells = Cells(rows, base, np.full(len(rows), width), zero > 0.0, 0 * rows, zero, one, empty, empty)
     first = cells.at(trial, zero)
     return replace(cells, first=first, last=np.roll(first, -count, axis=0))
 
@@ -266,13 +268,13 @@ def _doubtful(f: Reals, a: Reals, f1: Reals, b: Reals) -> Flags:
     return np.asarray(turns & (three | two))
 
 
-def _where(cells: Cells, by_guard: Flags, number: int) -> Reals:
+def _where(cells: Cells, by_guard: Flags) -> Reals:
     """Where to cut: where tangents meet, every third time in the middle, and always where a direction turns."""
     width = cells.high - cells.low
     column = np.where(by_guard, GUARD, VALUE)
     f, df, f1, df1 = (e[np.arange(len(cells)), column + k] for e in (cells.first, cells.last) for k in (0, 1))
     meets = np.clip(_between(f, df, f1, df1, width), 0.02 * width, 0.98 * width)
-    middle = (number % 3 == 2) | (_turned(cells).min(axis=1, initial=1.0) < TURNED)
+    middle = (cells.cuts % 3 == 2) | (_turned(cells).min(axis=1, initial=1.0) < TURNED)
     s = cells.low + np.where(middle, ASIDE * width, meets)
     beside = np.where(cells.high > 1.5 * SEAM, SEAM, -SEAM)
     return np.where(cells.curved & (np.abs(s) < SEAM), beside, s)
@@ -286,7 +288,7 @@ def _over_the_end(trial: Trial, cells: Cells) -> Cells:
     swap = cells.first[:, GUARD] < 0.0
     within, beyond = (cells.joint(np.where(swap == flag, cells.low, cells.high)) for flag in (False, True))
     low, high = np.zeros(len(cells)), np.ones(len(cells))  # of the way from within to beyond
-    path = Cells(cells.rows, within, beyond - within, cells.curved, low, high, *_ordered(cells, swap))
+    path = Cells(cells.rows, within, beyond - within, cells.curved, cells.cuts, low, high, *_ordered(cells, swap))
     level = np.where(path.first[:, GUARD] > TOUCHED, TOUCHED, 0.0)
     meet, rim = (_closing(trial, path, GUARD, at)[2] for at in (level, 0.0 * level))
     end = within + path.scale * meet

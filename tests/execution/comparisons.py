@@ -14,9 +14,8 @@ from derive.splits import is_spatial
 from tests.execution.closeness import asked, assert_same, is_close
 from tests.execution.controller import NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller
 from tests.execution.reasons import compare_reason
-from tests.execution.samples import HALF_TURN, NO_TURN, Bytes, Command, Sample, commands
-from tests.execution.settings import Range, own_limits, together
 from tests.execution.samples import HALF_TURN, NO_TURN, Bytes, Sample, commands
+from tests.execution.settings import Range, own_limits, together
 from tests.execution.twins import Twins
 
 Comparison = Callable[[Twins, Sample], None]

@@ -38,7 +38,7 @@ def nearest_root(
     What is given are values; the parts of a place stand there by their names.
     """
     if wanted:
-        for values in _finished(trial, finish, start, trial_given, finish_given, scan):
+        for values in _finished(trial, finish, start, trial_given, finish_given, scan, _FINISHED):
             return (1.0, *values[1:])
     return count * (0.0,)
 
@@ -48,17 +48,18 @@ def every_root(
     trial_given: Values, finish_given: Values, count: int, scan: Scan,
 ) -> list[Values]:
     """What `finish` says at all roots that fit, the nearest to the start first."""
-    return [v[1:] for v in _finished(trial, finish, start, trial_given, finish_given, scan)] if wanted else []
+    every = _finished(trial, finish, start, trial_given, finish_given, scan, _TRIALS) if wanted else ()
+    return [values[1:] for values in every]
 
 
 def _finished(
     trial: Callable[[Values], Any], finish: Callable[[Values], Any], start: float, trial_given: Values, finish_given: Values,
-    scan: Scan,
+    scan: Scan, most: int,
 ) -> Any:
     places = _Search(_of(trial, trial_given)).roots(start, _scanned(scan, start, trial_given))
     places.sort(key=lambda place: abs((place[0] - start + pi) % (2.0 * pi) - pi))
     at = _of(finish, finish_given)
-    for place in places[:_FINISHED]:
+    for place in places[:most]:
         values = at(place)
         if values[0] > 0.5:
             yield values

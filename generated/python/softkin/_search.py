@@ -10,8 +10,9 @@ from softkin._configuration import AUTOMATIC, Slot, slots
 from softkin._core import Mechanism
 from softkin._types import Diagnosis, FrameLike, Numbers, Reals, Rotation, Solution, Status, Vector
 
-_SAME = 1e-4
-"""Axes nearer than this (degrees, lengths) are one solution."""
+_SAME = 2e-3
+"""Axes nearer than this (degrees, lengths) are one solution of a branch: where the search only touches zero, it is met again
+beside it, and two solutions of a branch have one of another between them."""
 _COINCIDE = 1e-11
 """A solution whose margin is smaller lies on both branches."""
 

@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 61 additions, 54 multiplications, 7 divisions, 0 square roots, 13 sines
-    inverse: 263 additions, 351 multiplications, 70 divisions, 18 square roots, 28 sines
-    inverse, all 8 branches open: 1873 additions, 2493 multiplications, 497 divisions, 130 square roots, 224 sines
+    inverse: 265 additions, 357 multiplications, 70 divisions, 18 square roots, 28 sines
+    inverse, all 8 branches open: 1889 additions, 2541 multiplications, 497 divisions, 130 square roots, 224 sines
 
 Verified at 144 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -822,14 +822,25 @@ class Ac6ThreeParallel(Mechanism):
                 near_q_q1_for_q3 = near_cos_q6_q1_for_q3*r12*sigma_wrist + near_sin_q6_q1_for_q3*r11*sigma_wrist
                 near_p_q1_for_q3 = -near_cos_q6_q1_for_q3*r22*sigma_wrist - near_sin_q6_q1_for_q3*r21*sigma_wrist
                 near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
-                near_length_q1_for_q3 = near_radius_q1_for_q3 if near_radius_q1_for_q3 > 1e-12 else 1.0
-                near_along_q1_for_q3 = (
-                    (near_cos_q6_q1_for_q3*r11*sigma_wrist - near_sin_q6_q1_for_q3*r12*sigma_wrist)*near_p_q1_for_q3
-                    - (near_sin_q6_q1_for_q3*r22*sigma_wrist - near_cos_q6_q1_for_q3*r21*sigma_wrist)*near_q_q1_for_q3
-                )
-                near_side_q1_for_q3 = -1.0 if near_along_q1_for_q3 < 0.0 else 1.0
-                near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3  # the earlier angle follows
-                near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3
+                # the earlier angle follows
+                # it stays where every angle gives this one
+                if near_radius_q1_for_q3 > 1e-12:
+                    near_along_q1_for_q3 = (
+                        (near_cos_q6_q1_for_q3*r11*sigma_wrist - near_sin_q6_q1_for_q3*r12*sigma_wrist)*near_p_q1_for_q3
+                        - (near_sin_q6_q1_for_q3*r22*sigma_wrist - near_cos_q6_q1_for_q3*r21*sigma_wrist)*near_q_q1_for_q3
+                    )
+                    # of two opposite ways
+                    near_towards_q1_for_q3 = (
+                        near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3
+                        if abs(near_along_q1_for_q3) <= 1e-11*near_radius_q1_for_q3
+                        else near_along_q1_for_q3
+                    )
+                    near_side_q1_for_q3 = -1.0 if near_towards_q1_for_q3 < 0.0 else 1.0
+                    near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
+                    near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
+                else:
+                    near_cos_q1_for_q3 = cos_q1_before_q1_for_q3
+                    near_sin_q1_for_q3 = sin_q1_before_q1_for_q3
                 if distance_q1 > 1e-11*machine_scale:
                     near_cost_q1_for_q3 = abs(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
                     mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3  # the other way to the arc
@@ -840,19 +851,29 @@ class Ac6ThreeParallel(Mechanism):
                     mirrored_radius_q1_for_q3 = sqrt(
                         mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
                     )
-                    mirrored_length_q1_for_q3 = mirrored_radius_q1_for_q3 if mirrored_radius_q1_for_q3 > 1e-12 else 1.0
-                    mirrored_along_q1_for_q3 = (
-                        (
-                            mirrored_cos_q6_q1_for_q3*r11*sigma_wrist - mirrored_sin_q6_q1_for_q3*r12*sigma_wrist
-                        )*mirrored_p_q1_for_q3
-                        - (
-                            mirrored_sin_q6_q1_for_q3*r22*sigma_wrist - mirrored_cos_q6_q1_for_q3*r21*sigma_wrist
-                        )*mirrored_q_q1_for_q3
-                    )
-                    mirrored_side_q1_for_q3 = -1.0 if mirrored_along_q1_for_q3 < 0.0 else 1.0
                     # the earlier angle follows
-                    mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
-                    mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
+                    # it stays where every angle gives this one
+                    if mirrored_radius_q1_for_q3 > 1e-12:
+                        mirrored_along_q1_for_q3 = (
+                            (
+                                mirrored_cos_q6_q1_for_q3*r11*sigma_wrist - mirrored_sin_q6_q1_for_q3*r12*sigma_wrist
+                            )*mirrored_p_q1_for_q3
+                            - (
+                                mirrored_sin_q6_q1_for_q3*r22*sigma_wrist - mirrored_cos_q6_q1_for_q3*r21*sigma_wrist
+                            )*mirrored_q_q1_for_q3
+                        )
+                        # of two opposite ways
+                        mirrored_towards_q1_for_q3 = (
+                            mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3
+                            if abs(mirrored_along_q1_for_q3) <= 1e-11*mirrored_radius_q1_for_q3
+                            else mirrored_along_q1_for_q3
+                        )
+                        mirrored_side_q1_for_q3 = -1.0 if mirrored_towards_q1_for_q3 < 0.0 else 1.0
+                        mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                        mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                    else:
+                        mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3
+                        mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3
                     mirrored_cost_q1_for_q3 = abs(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
                     if near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3:
                         swept_cost_q1_for_q3 = near_cost_q1_for_q3

@@ -404,14 +404,31 @@ class ArrayPrograms(Programs):
                 near_q_q1_for_q3 = near_cos_q6_q1_for_q3*r12*sigma_wrist + near_sin_q6_q1_for_q3*r11*sigma_wrist
                 near_p_q1_for_q3 = -near_cos_q6_q1_for_q3*r22*sigma_wrist - near_sin_q6_q1_for_q3*r21*sigma_wrist
                 near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
-                near_length_q1_for_q3 = select(near_radius_q1_for_q3 > 1e-12, near_radius_q1_for_q3, 1.0)
+
+                def elsewhere_near_cos_q1_for_q3(cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real) -> Reals:
+                    near_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows
+                    near_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where every angle gives this one
+                    return (near_cos_q1_for_q3, near_sin_q1_for_q3)
+
                 near_along_q1_for_q3 = (
                     (near_cos_q6_q1_for_q3*r11*sigma_wrist - near_sin_q6_q1_for_q3*r12*sigma_wrist)*near_p_q1_for_q3
                     - (near_sin_q6_q1_for_q3*r22*sigma_wrist - near_cos_q6_q1_for_q3*r21*sigma_wrist)*near_q_q1_for_q3
                 )
-                near_side_q1_for_q3 = select(near_along_q1_for_q3 < 0.0, -1.0, 1.0)
-                near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3  # the earlier angle follows
-                near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3
+                # of two opposite ways
+                near_towards_q1_for_q3 = select(
+                    absolute(near_along_q1_for_q3) <= 1e-11*near_radius_q1_for_q3,
+                    near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3, near_along_q1_for_q3,
+                )
+                near_side_q1_for_q3 = select(near_towards_q1_for_q3 < 0.0, -1.0, 1.0)
+                near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3  # the earlier angle follows
+                # it stays where every angle gives this one
+                near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
+                near_cos_q1_for_q3, near_sin_q1_for_q3 = elsewhere(
+                    near_radius_q1_for_q3 > 1e-12,
+                    (near_cos_q1_for_q3, near_sin_q1_for_q3),
+                    elsewhere_near_cos_q1_for_q3,
+                    (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
+                )
 
                 def elsewhere_swept_cost_q1_for_q3_2(near_cos_q1_for_q3: Real, near_sin_q1_for_q3: Real) -> Reals:
                     swept_cost_q1_for_q3 = 0.0
@@ -428,7 +445,12 @@ class ArrayPrograms(Programs):
                 mirrored_radius_q1_for_q3 = sqrt(
                     mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
                 )
-                mirrored_length_q1_for_q3 = select(mirrored_radius_q1_for_q3 > 1e-12, mirrored_radius_q1_for_q3, 1.0)
+
+                def elsewhere_mirrored_cos_q1_for_q3(cos_q1_before_q1_for_q3: Real, sin_q1_before_q1_for_q3: Real) -> Reals:
+                    mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3  # the earlier angle follows
+                    mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3  # it stays where every angle gives this one
+                    return (mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3)
+
                 mirrored_along_q1_for_q3 = (
                     (
                         mirrored_cos_q6_q1_for_q3*r11*sigma_wrist - mirrored_sin_q6_q1_for_q3*r12*sigma_wrist
@@ -437,10 +459,23 @@ class ArrayPrograms(Programs):
                         mirrored_sin_q6_q1_for_q3*r22*sigma_wrist - mirrored_cos_q6_q1_for_q3*r21*sigma_wrist
                     )*mirrored_q_q1_for_q3
                 )
-                mirrored_side_q1_for_q3 = select(mirrored_along_q1_for_q3 < 0.0, -1.0, 1.0)
+                # of two opposite ways
+                mirrored_towards_q1_for_q3 = select(
+                    absolute(mirrored_along_q1_for_q3) <= 1e-11*mirrored_radius_q1_for_q3,
+                    mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3,
+                    mirrored_along_q1_for_q3,
+                )
+                mirrored_side_q1_for_q3 = select(mirrored_towards_q1_for_q3 < 0.0, -1.0, 1.0)
                 # the earlier angle follows
-                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
-                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
+                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                # it stays where every angle gives this one
+                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3 = elsewhere(
+                    mirrored_radius_q1_for_q3 > 1e-12,
+                    (mirrored_cos_q1_for_q3, mirrored_sin_q1_for_q3),
+                    elsewhere_mirrored_cos_q1_for_q3,
+                    (cos_q1_before_q1_for_q3, sin_q1_before_q1_for_q3),
+                )
                 mirrored_cost_q1_for_q3 = absolute(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
 
                 def elsewhere_swept_cost_q1_for_q3(
@@ -1253,20 +1288,41 @@ class ArrayPrograms(Programs):
                 near_p_q1_for_q3_left_down*near_p_q1_for_q3_left_down
                 + near_q_q1_for_q3_left_down*near_q_q1_for_q3_left_down
             )
-            near_length_q1_for_q3_left_down = select(
-                near_radius_q1_for_q3_left_down > 1e-12, near_radius_q1_for_q3_left_down, 1.0,
-            )
+
+            def elsewhere_near_cos_q1_for_q3_left_down(
+                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
+            ) -> Reals:
+                near_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows
+                near_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                return (near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down)
+
             near_along_q1_for_q3_left_down = (
                 (near_cos_q6_q1_for_q3_left_down*r11 - near_sin_q6_q1_for_q3_left_down*r12)*near_p_q1_for_q3_left_down
                 - (near_sin_q6_q1_for_q3_left_down*r22 - near_cos_q6_q1_for_q3_left_down*r21)*near_q_q1_for_q3_left_down
             )
-            near_side_q1_for_q3_left_down = select(near_along_q1_for_q3_left_down < 0.0, -1.0, 1.0)
+            # of two opposite ways
+            near_towards_q1_for_q3_left_down = select(
+                absolute(near_along_q1_for_q3_left_down) <= 1e-11*near_radius_q1_for_q3_left_down,
+                (
+                    near_p_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left
+                    - near_q_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left
+                ),
+                near_along_q1_for_q3_left_down,
+            )
+            near_side_q1_for_q3_left_down = select(near_towards_q1_for_q3_left_down < 0.0, -1.0, 1.0)
             # the earlier angle follows
             near_cos_q1_for_q3_left_down = (
-                -near_q_q1_for_q3_left_down*near_side_q1_for_q3_left_down/near_length_q1_for_q3_left_down
+                -near_q_q1_for_q3_left_down*near_side_q1_for_q3_left_down/near_radius_q1_for_q3_left_down
             )
+            # it stays where every angle gives this one
             near_sin_q1_for_q3_left_down = (
-                near_p_q1_for_q3_left_down*near_side_q1_for_q3_left_down/near_length_q1_for_q3_left_down
+                near_p_q1_for_q3_left_down*near_side_q1_for_q3_left_down/near_radius_q1_for_q3_left_down
+            )
+            near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down = elsewhere(
+                near_radius_q1_for_q3_left_down > 1e-12,
+                (near_cos_q1_for_q3_left_down, near_sin_q1_for_q3_left_down),
+                elsewhere_near_cos_q1_for_q3_left_down,
+                (cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left),
             )
             near_q6_q1_for_q3_left_up = atan2(
                 root((1.0 - highest_q6_q1_for_q3_left_up)*(1.0 + highest_q6_q1_for_q3_left_up)),
@@ -1300,20 +1356,41 @@ class ArrayPrograms(Programs):
             near_radius_q1_for_q3_left_up = sqrt(
                 near_p_q1_for_q3_left_up*near_p_q1_for_q3_left_up + near_q_q1_for_q3_left_up*near_q_q1_for_q3_left_up
             )
-            near_length_q1_for_q3_left_up = select(
-                near_radius_q1_for_q3_left_up > 1e-12, near_radius_q1_for_q3_left_up, 1.0,
-            )
+
+            def elsewhere_near_cos_q1_for_q3_left_up(
+                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
+            ) -> Reals:
+                near_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows
+                near_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                return (near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up)
+
             near_along_q1_for_q3_left_up = (
                 (near_sin_q6_q1_for_q3_left_up*r12 - near_cos_q6_q1_for_q3_left_up*r11)*near_p_q1_for_q3_left_up
                 - (near_cos_q6_q1_for_q3_left_up*r21 - near_sin_q6_q1_for_q3_left_up*r22)*near_q_q1_for_q3_left_up
             )
-            near_side_q1_for_q3_left_up = select(near_along_q1_for_q3_left_up < 0.0, -1.0, 1.0)
+            # of two opposite ways
+            near_towards_q1_for_q3_left_up = select(
+                absolute(near_along_q1_for_q3_left_up) <= 1e-11*near_radius_q1_for_q3_left_up,
+                (
+                    near_p_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left
+                    - near_q_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left
+                ),
+                near_along_q1_for_q3_left_up,
+            )
+            near_side_q1_for_q3_left_up = select(near_towards_q1_for_q3_left_up < 0.0, -1.0, 1.0)
             # the earlier angle follows
             near_cos_q1_for_q3_left_up = (
-                -near_q_q1_for_q3_left_up*near_side_q1_for_q3_left_up/near_length_q1_for_q3_left_up
+                -near_q_q1_for_q3_left_up*near_side_q1_for_q3_left_up/near_radius_q1_for_q3_left_up
             )
+            # it stays where every angle gives this one
             near_sin_q1_for_q3_left_up = (
-                near_p_q1_for_q3_left_up*near_side_q1_for_q3_left_up/near_length_q1_for_q3_left_up
+                near_p_q1_for_q3_left_up*near_side_q1_for_q3_left_up/near_radius_q1_for_q3_left_up
+            )
+            near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up = elsewhere(
+                near_radius_q1_for_q3_left_up > 1e-12,
+                (near_cos_q1_for_q3_left_up, near_sin_q1_for_q3_left_up),
+                elsewhere_near_cos_q1_for_q3_left_up,
+                (cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left),
             )
             r21_from_q1_before_q1_for_q3_right = r21*cos_q1_before_q1_for_q3_right - r11*sin_q1_before_q1_for_q3_right
             r22_from_q1_before_q1_for_q3_right = r22*cos_q1_before_q1_for_q3_right - r12*sin_q1_before_q1_for_q3_right
@@ -1509,22 +1586,43 @@ class ArrayPrograms(Programs):
                 near_p_q1_for_q3_right_down*near_p_q1_for_q3_right_down
                 + near_q_q1_for_q3_right_down*near_q_q1_for_q3_right_down
             )
-            near_length_q1_for_q3_right_down = select(
-                near_radius_q1_for_q3_right_down > 1e-12, near_radius_q1_for_q3_right_down, 1.0,
-            )
+
+            def elsewhere_near_cos_q1_for_q3_right_down(
+                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
+            ) -> Reals:
+                near_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows
+                near_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                return (near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down)
+
             near_along_q1_for_q3_right_down = (
                 (near_cos_q6_q1_for_q3_right_down*r11 - near_sin_q6_q1_for_q3_right_down*r12)*near_p_q1_for_q3_right_down
                 - (
                     near_sin_q6_q1_for_q3_right_down*r22 - near_cos_q6_q1_for_q3_right_down*r21
                 )*near_q_q1_for_q3_right_down
             )
-            near_side_q1_for_q3_right_down = select(near_along_q1_for_q3_right_down < 0.0, -1.0, 1.0)
+            # of two opposite ways
+            near_towards_q1_for_q3_right_down = select(
+                absolute(near_along_q1_for_q3_right_down) <= 1e-11*near_radius_q1_for_q3_right_down,
+                (
+                    near_p_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right
+                    - near_q_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right
+                ),
+                near_along_q1_for_q3_right_down,
+            )
+            near_side_q1_for_q3_right_down = select(near_towards_q1_for_q3_right_down < 0.0, -1.0, 1.0)
             # the earlier angle follows
             near_cos_q1_for_q3_right_down = (
-                -near_q_q1_for_q3_right_down*near_side_q1_for_q3_right_down/near_length_q1_for_q3_right_down
+                -near_q_q1_for_q3_right_down*near_side_q1_for_q3_right_down/near_radius_q1_for_q3_right_down
             )
+            # it stays where every angle gives this one
             near_sin_q1_for_q3_right_down = (
-                near_p_q1_for_q3_right_down*near_side_q1_for_q3_right_down/near_length_q1_for_q3_right_down
+                near_p_q1_for_q3_right_down*near_side_q1_for_q3_right_down/near_radius_q1_for_q3_right_down
+            )
+            near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down = elsewhere(
+                near_radius_q1_for_q3_right_down > 1e-12,
+                (near_cos_q1_for_q3_right_down, near_sin_q1_for_q3_right_down),
+                elsewhere_near_cos_q1_for_q3_right_down,
+                (cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right),
             )
             near_q6_q1_for_q3_right_up = atan2(
                 root((1.0 - highest_q6_q1_for_q3_right_up)*(1.0 + highest_q6_q1_for_q3_right_up)),
@@ -1558,20 +1656,41 @@ class ArrayPrograms(Programs):
             near_radius_q1_for_q3_right_up = sqrt(
                 near_p_q1_for_q3_right_up*near_p_q1_for_q3_right_up + near_q_q1_for_q3_right_up*near_q_q1_for_q3_right_up
             )
-            near_length_q1_for_q3_right_up = select(
-                near_radius_q1_for_q3_right_up > 1e-12, near_radius_q1_for_q3_right_up, 1.0,
-            )
+
+            def elsewhere_near_cos_q1_for_q3_right_up(
+                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
+            ) -> Reals:
+                near_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows
+                near_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                return (near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up)
+
             near_along_q1_for_q3_right_up = (
                 (near_sin_q6_q1_for_q3_right_up*r12 - near_cos_q6_q1_for_q3_right_up*r11)*near_p_q1_for_q3_right_up
                 - (near_cos_q6_q1_for_q3_right_up*r21 - near_sin_q6_q1_for_q3_right_up*r22)*near_q_q1_for_q3_right_up
             )
-            near_side_q1_for_q3_right_up = select(near_along_q1_for_q3_right_up < 0.0, -1.0, 1.0)
+            # of two opposite ways
+            near_towards_q1_for_q3_right_up = select(
+                absolute(near_along_q1_for_q3_right_up) <= 1e-11*near_radius_q1_for_q3_right_up,
+                (
+                    near_p_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right
+                    - near_q_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right
+                ),
+                near_along_q1_for_q3_right_up,
+            )
+            near_side_q1_for_q3_right_up = select(near_towards_q1_for_q3_right_up < 0.0, -1.0, 1.0)
             # the earlier angle follows
             near_cos_q1_for_q3_right_up = (
-                -near_q_q1_for_q3_right_up*near_side_q1_for_q3_right_up/near_length_q1_for_q3_right_up
+                -near_q_q1_for_q3_right_up*near_side_q1_for_q3_right_up/near_radius_q1_for_q3_right_up
             )
+            # it stays where every angle gives this one
             near_sin_q1_for_q3_right_up = (
-                near_p_q1_for_q3_right_up*near_side_q1_for_q3_right_up/near_length_q1_for_q3_right_up
+                near_p_q1_for_q3_right_up*near_side_q1_for_q3_right_up/near_radius_q1_for_q3_right_up
+            )
+            near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up = elsewhere(
+                near_radius_q1_for_q3_right_up > 1e-12,
+                (near_cos_q1_for_q3_right_up, near_sin_q1_for_q3_right_up),
+                elsewhere_near_cos_q1_for_q3_right_up,
+                (cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right),
             )
 
             def elsewhere_swept_cost_q1_for_q3_left_down_2(
@@ -1615,9 +1734,14 @@ class ArrayPrograms(Programs):
                 mirrored_p_q1_for_q3_left_down*mirrored_p_q1_for_q3_left_down
                 + mirrored_q_q1_for_q3_left_down*mirrored_q_q1_for_q3_left_down
             )
-            mirrored_length_q1_for_q3_left_down = select(
-                mirrored_radius_q1_for_q3_left_down > 1e-12, mirrored_radius_q1_for_q3_left_down, 1.0,
-            )
+
+            def elsewhere_mirrored_cos_q1_for_q3_left_down(
+                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
+            ) -> Reals:
+                mirrored_cos_q1_for_q3_left_down = cos_q1_before_q1_for_q3_left  # the earlier angle follows
+                mirrored_sin_q1_for_q3_left_down = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                return (mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down)
+
             mirrored_along_q1_for_q3_left_down = (
                 (
                     mirrored_cos_q6_q1_for_q3_left_down*r11 - mirrored_sin_q6_q1_for_q3_left_down*r12
@@ -1626,13 +1750,29 @@ class ArrayPrograms(Programs):
                     mirrored_sin_q6_q1_for_q3_left_down*r22 - mirrored_cos_q6_q1_for_q3_left_down*r21
                 )*mirrored_q_q1_for_q3_left_down
             )
-            mirrored_side_q1_for_q3_left_down = select(mirrored_along_q1_for_q3_left_down < 0.0, -1.0, 1.0)
+            # of two opposite ways
+            mirrored_towards_q1_for_q3_left_down = select(
+                absolute(mirrored_along_q1_for_q3_left_down) <= 1e-11*mirrored_radius_q1_for_q3_left_down,
+                (
+                    mirrored_p_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left
+                    - mirrored_q_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left
+                ),
+                mirrored_along_q1_for_q3_left_down,
+            )
+            mirrored_side_q1_for_q3_left_down = select(mirrored_towards_q1_for_q3_left_down < 0.0, -1.0, 1.0)
             # the earlier angle follows
             mirrored_cos_q1_for_q3_left_down = (
-                -mirrored_q_q1_for_q3_left_down*mirrored_side_q1_for_q3_left_down/mirrored_length_q1_for_q3_left_down
+                -mirrored_q_q1_for_q3_left_down*mirrored_side_q1_for_q3_left_down/mirrored_radius_q1_for_q3_left_down
             )
+            # it stays where every angle gives this one
             mirrored_sin_q1_for_q3_left_down = (
-                mirrored_p_q1_for_q3_left_down*mirrored_side_q1_for_q3_left_down/mirrored_length_q1_for_q3_left_down
+                mirrored_p_q1_for_q3_left_down*mirrored_side_q1_for_q3_left_down/mirrored_radius_q1_for_q3_left_down
+            )
+            mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down = elsewhere(
+                mirrored_radius_q1_for_q3_left_down > 1e-12,
+                (mirrored_cos_q1_for_q3_left_down, mirrored_sin_q1_for_q3_left_down),
+                elsewhere_mirrored_cos_q1_for_q3_left_down,
+                (cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left),
             )
             mirrored_cost_q1_for_q3_left_down = absolute(
                 d4 + mirrored_cos_q1_for_q3_left_down*wrist_y - mirrored_sin_q1_for_q3_left_down*wrist_x
@@ -1669,9 +1809,14 @@ class ArrayPrograms(Programs):
                 mirrored_p_q1_for_q3_left_up*mirrored_p_q1_for_q3_left_up
                 + mirrored_q_q1_for_q3_left_up*mirrored_q_q1_for_q3_left_up
             )
-            mirrored_length_q1_for_q3_left_up = select(
-                mirrored_radius_q1_for_q3_left_up > 1e-12, mirrored_radius_q1_for_q3_left_up, 1.0,
-            )
+
+            def elsewhere_mirrored_cos_q1_for_q3_left_up(
+                cos_q1_before_q1_for_q3_left: Real, sin_q1_before_q1_for_q3_left: Real,
+            ) -> Reals:
+                mirrored_cos_q1_for_q3_left_up = cos_q1_before_q1_for_q3_left  # the earlier angle follows
+                mirrored_sin_q1_for_q3_left_up = sin_q1_before_q1_for_q3_left  # it stays where every angle gives this one
+                return (mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up)
+
             mirrored_along_q1_for_q3_left_up = (
                 (
                     mirrored_sin_q6_q1_for_q3_left_up*r12 - mirrored_cos_q6_q1_for_q3_left_up*r11
@@ -1680,13 +1825,29 @@ class ArrayPrograms(Programs):
                     mirrored_cos_q6_q1_for_q3_left_up*r21 - mirrored_sin_q6_q1_for_q3_left_up*r22
                 )*mirrored_q_q1_for_q3_left_up
             )
-            mirrored_side_q1_for_q3_left_up = select(mirrored_along_q1_for_q3_left_up < 0.0, -1.0, 1.0)
+            # of two opposite ways
+            mirrored_towards_q1_for_q3_left_up = select(
+                absolute(mirrored_along_q1_for_q3_left_up) <= 1e-11*mirrored_radius_q1_for_q3_left_up,
+                (
+                    mirrored_p_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left
+                    - mirrored_q_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left
+                ),
+                mirrored_along_q1_for_q3_left_up,
+            )
+            mirrored_side_q1_for_q3_left_up = select(mirrored_towards_q1_for_q3_left_up < 0.0, -1.0, 1.0)
             # the earlier angle follows
             mirrored_cos_q1_for_q3_left_up = (
-                -mirrored_q_q1_for_q3_left_up*mirrored_side_q1_for_q3_left_up/mirrored_length_q1_for_q3_left_up
+                -mirrored_q_q1_for_q3_left_up*mirrored_side_q1_for_q3_left_up/mirrored_radius_q1_for_q3_left_up
             )
+            # it stays where every angle gives this one
             mirrored_sin_q1_for_q3_left_up = (
-                mirrored_p_q1_for_q3_left_up*mirrored_side_q1_for_q3_left_up/mirrored_length_q1_for_q3_left_up
+                mirrored_p_q1_for_q3_left_up*mirrored_side_q1_for_q3_left_up/mirrored_radius_q1_for_q3_left_up
+            )
+            mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up = elsewhere(
+                mirrored_radius_q1_for_q3_left_up > 1e-12,
+                (mirrored_cos_q1_for_q3_left_up, mirrored_sin_q1_for_q3_left_up),
+                elsewhere_mirrored_cos_q1_for_q3_left_up,
+                (cos_q1_before_q1_for_q3_left, sin_q1_before_q1_for_q3_left),
             )
             mirrored_cost_q1_for_q3_left_up = absolute(
                 d4 + mirrored_cos_q1_for_q3_left_up*wrist_y - mirrored_sin_q1_for_q3_left_up*wrist_x
@@ -1727,9 +1888,14 @@ class ArrayPrograms(Programs):
                 mirrored_p_q1_for_q3_right_down*mirrored_p_q1_for_q3_right_down
                 + mirrored_q_q1_for_q3_right_down*mirrored_q_q1_for_q3_right_down
             )
-            mirrored_length_q1_for_q3_right_down = select(
-                mirrored_radius_q1_for_q3_right_down > 1e-12, mirrored_radius_q1_for_q3_right_down, 1.0,
-            )
+
+            def elsewhere_mirrored_cos_q1_for_q3_right_down(
+                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
+            ) -> Reals:
+                mirrored_cos_q1_for_q3_right_down = cos_q1_before_q1_for_q3_right  # the earlier angle follows
+                mirrored_sin_q1_for_q3_right_down = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                return (mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down)
+
             mirrored_along_q1_for_q3_right_down = (
                 (
                     mirrored_cos_q6_q1_for_q3_right_down*r11 - mirrored_sin_q6_q1_for_q3_right_down*r12
@@ -1738,13 +1904,29 @@ class ArrayPrograms(Programs):
                     mirrored_sin_q6_q1_for_q3_right_down*r22 - mirrored_cos_q6_q1_for_q3_right_down*r21
                 )*mirrored_q_q1_for_q3_right_down
             )
-            mirrored_side_q1_for_q3_right_down = select(mirrored_along_q1_for_q3_right_down < 0.0, -1.0, 1.0)
+            # of two opposite ways
+            mirrored_towards_q1_for_q3_right_down = select(
+                absolute(mirrored_along_q1_for_q3_right_down) <= 1e-11*mirrored_radius_q1_for_q3_right_down,
+                (
+                    mirrored_p_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right
+                    - mirrored_q_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right
+                ),
+                mirrored_along_q1_for_q3_right_down,
+            )
+            mirrored_side_q1_for_q3_right_down = select(mirrored_towards_q1_for_q3_right_down < 0.0, -1.0, 1.0)
             # the earlier angle follows
             mirrored_cos_q1_for_q3_right_down = (
-                -mirrored_q_q1_for_q3_right_down*mirrored_side_q1_for_q3_right_down/mirrored_length_q1_for_q3_right_down
+                -mirrored_q_q1_for_q3_right_down*mirrored_side_q1_for_q3_right_down/mirrored_radius_q1_for_q3_right_down
             )
+            # it stays where every angle gives this one
             mirrored_sin_q1_for_q3_right_down = (
-                mirrored_p_q1_for_q3_right_down*mirrored_side_q1_for_q3_right_down/mirrored_length_q1_for_q3_right_down
+                mirrored_p_q1_for_q3_right_down*mirrored_side_q1_for_q3_right_down/mirrored_radius_q1_for_q3_right_down
+            )
+            mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down = elsewhere(
+                mirrored_radius_q1_for_q3_right_down > 1e-12,
+                (mirrored_cos_q1_for_q3_right_down, mirrored_sin_q1_for_q3_right_down),
+                elsewhere_mirrored_cos_q1_for_q3_right_down,
+                (cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right),
             )
             mirrored_cost_q1_for_q3_right_down = absolute(
                 d4 + mirrored_cos_q1_for_q3_right_down*wrist_y - mirrored_sin_q1_for_q3_right_down*wrist_x
@@ -1788,9 +1970,14 @@ class ArrayPrograms(Programs):
                 mirrored_p_q1_for_q3_right_up*mirrored_p_q1_for_q3_right_up
                 + mirrored_q_q1_for_q3_right_up*mirrored_q_q1_for_q3_right_up
             )
-            mirrored_length_q1_for_q3_right_up = select(
-                mirrored_radius_q1_for_q3_right_up > 1e-12, mirrored_radius_q1_for_q3_right_up, 1.0,
-            )
+
+            def elsewhere_mirrored_cos_q1_for_q3_right_up(
+                cos_q1_before_q1_for_q3_right: Real, sin_q1_before_q1_for_q3_right: Real,
+            ) -> Reals:
+                mirrored_cos_q1_for_q3_right_up = cos_q1_before_q1_for_q3_right  # the earlier angle follows
+                mirrored_sin_q1_for_q3_right_up = sin_q1_before_q1_for_q3_right  # it stays where every angle gives this one
+                return (mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up)
+
             mirrored_along_q1_for_q3_right_up = (
                 (
                     mirrored_sin_q6_q1_for_q3_right_up*r12 - mirrored_cos_q6_q1_for_q3_right_up*r11
@@ -1799,13 +1986,29 @@ class ArrayPrograms(Programs):
                     mirrored_cos_q6_q1_for_q3_right_up*r21 - mirrored_sin_q6_q1_for_q3_right_up*r22
                 )*mirrored_q_q1_for_q3_right_up
             )
-            mirrored_side_q1_for_q3_right_up = select(mirrored_along_q1_for_q3_right_up < 0.0, -1.0, 1.0)
+            # of two opposite ways
+            mirrored_towards_q1_for_q3_right_up = select(
+                absolute(mirrored_along_q1_for_q3_right_up) <= 1e-11*mirrored_radius_q1_for_q3_right_up,
+                (
+                    mirrored_p_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right
+                    - mirrored_q_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right
+                ),
+                mirrored_along_q1_for_q3_right_up,
+            )
+            mirrored_side_q1_for_q3_right_up = select(mirrored_towards_q1_for_q3_right_up < 0.0, -1.0, 1.0)
             # the earlier angle follows
             mirrored_cos_q1_for_q3_right_up = (
-                -mirrored_q_q1_for_q3_right_up*mirrored_side_q1_for_q3_right_up/mirrored_length_q1_for_q3_right_up
+                -mirrored_q_q1_for_q3_right_up*mirrored_side_q1_for_q3_right_up/mirrored_radius_q1_for_q3_right_up
             )
+            # it stays where every angle gives this one
             mirrored_sin_q1_for_q3_right_up = (
-                mirrored_p_q1_for_q3_right_up*mirrored_side_q1_for_q3_right_up/mirrored_length_q1_for_q3_right_up
+                mirrored_p_q1_for_q3_right_up*mirrored_side_q1_for_q3_right_up/mirrored_radius_q1_for_q3_right_up
+            )
+            mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up = elsewhere(
+                mirrored_radius_q1_for_q3_right_up > 1e-12,
+                (mirrored_cos_q1_for_q3_right_up, mirrored_sin_q1_for_q3_right_up),
+                elsewhere_mirrored_cos_q1_for_q3_right_up,
+                (cos_q1_before_q1_for_q3_right, sin_q1_before_q1_for_q3_right),
             )
             mirrored_cost_q1_for_q3_right_up = absolute(
                 d4 + mirrored_cos_q1_for_q3_right_up*wrist_y - mirrored_sin_q1_for_q3_right_up*wrist_x

@@ -217,14 +217,22 @@ def branch(
             near_q_q1_for_q3 = near_cos_q6_q1_for_q3*r12*sigma_wrist + near_sin_q6_q1_for_q3*r11*sigma_wrist
             near_p_q1_for_q3 = -near_cos_q6_q1_for_q3*r22*sigma_wrist - near_sin_q6_q1_for_q3*r21*sigma_wrist
             near_radius_q1_for_q3 = sqrt(near_p_q1_for_q3*near_p_q1_for_q3 + near_q_q1_for_q3*near_q_q1_for_q3)
-            near_length_q1_for_q3 = near_radius_q1_for_q3 if near_radius_q1_for_q3 > 1e-12 else 1.0
-            near_along_q1_for_q3 = (
-                (near_cos_q6_q1_for_q3*r11*sigma_wrist - near_sin_q6_q1_for_q3*r12*sigma_wrist)*near_p_q1_for_q3
-                - (near_sin_q6_q1_for_q3*r22*sigma_wrist - near_cos_q6_q1_for_q3*r21*sigma_wrist)*near_q_q1_for_q3
-            )
-            near_side_q1_for_q3 = -1.0 if near_along_q1_for_q3 < 0.0 else 1.0
-            near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3
-            near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_length_q1_for_q3
+            if near_radius_q1_for_q3 > 1e-12:
+                near_along_q1_for_q3 = (
+                    (near_cos_q6_q1_for_q3*r11*sigma_wrist - near_sin_q6_q1_for_q3*r12*sigma_wrist)*near_p_q1_for_q3
+                    - (near_sin_q6_q1_for_q3*r22*sigma_wrist - near_cos_q6_q1_for_q3*r21*sigma_wrist)*near_q_q1_for_q3
+                )
+                near_towards_q1_for_q3 = (
+                    near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3
+                    if abs(near_along_q1_for_q3) <= 1e-11*near_radius_q1_for_q3
+                    else near_along_q1_for_q3
+                )
+                near_side_q1_for_q3 = -1.0 if near_towards_q1_for_q3 < 0.0 else 1.0
+                near_cos_q1_for_q3 = -near_q_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
+                near_sin_q1_for_q3 = near_p_q1_for_q3*near_side_q1_for_q3/near_radius_q1_for_q3
+            else:
+                near_cos_q1_for_q3 = cos_q1_before_q1_for_q3
+                near_sin_q1_for_q3 = sin_q1_before_q1_for_q3
             if distance_q1 > 1e-11*machine_scale:
                 near_cost_q1_for_q3 = abs(d4 + near_cos_q1_for_q3*wrist_y - near_sin_q1_for_q3*wrist_x)
                 mirrored_q6_q1_for_q3 = 2.0*centre_q6_q1_for_q3 - moved_q6_q1_for_q3
@@ -235,18 +243,26 @@ def branch(
                 mirrored_radius_q1_for_q3 = sqrt(
                     mirrored_p_q1_for_q3*mirrored_p_q1_for_q3 + mirrored_q_q1_for_q3*mirrored_q_q1_for_q3
                 )
-                mirrored_length_q1_for_q3 = mirrored_radius_q1_for_q3 if mirrored_radius_q1_for_q3 > 1e-12 else 1.0
-                mirrored_along_q1_for_q3 = (
-                    (
-                        mirrored_cos_q6_q1_for_q3*r11*sigma_wrist - mirrored_sin_q6_q1_for_q3*r12*sigma_wrist
-                    )*mirrored_p_q1_for_q3
-                    - (
-                        mirrored_sin_q6_q1_for_q3*r22*sigma_wrist - mirrored_cos_q6_q1_for_q3*r21*sigma_wrist
-                    )*mirrored_q_q1_for_q3
-                )
-                mirrored_side_q1_for_q3 = -1.0 if mirrored_along_q1_for_q3 < 0.0 else 1.0
-                mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
-                mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_length_q1_for_q3
+                if mirrored_radius_q1_for_q3 > 1e-12:
+                    mirrored_along_q1_for_q3 = (
+                        (
+                            mirrored_cos_q6_q1_for_q3*r11*sigma_wrist - mirrored_sin_q6_q1_for_q3*r12*sigma_wrist
+                        )*mirrored_p_q1_for_q3
+                        - (
+                            mirrored_sin_q6_q1_for_q3*r22*sigma_wrist - mirrored_cos_q6_q1_for_q3*r21*sigma_wrist
+                        )*mirrored_q_q1_for_q3
+                    )
+                    mirrored_towards_q1_for_q3 = (
+                        mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3
+                        if abs(mirrored_along_q1_for_q3) <= 1e-11*mirrored_radius_q1_for_q3
+                        else mirrored_along_q1_for_q3
+                    )
+                    mirrored_side_q1_for_q3 = -1.0 if mirrored_towards_q1_for_q3 < 0.0 else 1.0
+                    mirrored_cos_q1_for_q3 = -mirrored_q_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                    mirrored_sin_q1_for_q3 = mirrored_p_q1_for_q3*mirrored_side_q1_for_q3/mirrored_radius_q1_for_q3
+                else:
+                    mirrored_cos_q1_for_q3 = cos_q1_before_q1_for_q3
+                    mirrored_sin_q1_for_q3 = sin_q1_before_q1_for_q3
                 mirrored_cost_q1_for_q3 = abs(d4 + mirrored_cos_q1_for_q3*wrist_y - mirrored_sin_q1_for_q3*wrist_x)
                 if near_cost_q1_for_q3 <= mirrored_cost_q1_for_q3:
                     swept_cost_q1_for_q3 = near_cost_q1_for_q3
