@@ -148,12 +148,18 @@ def _errors() -> list[sp.Expr]:
     return [*places, *((turn[i, j] - turn[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))]
 
 
+def _without_unit(condition: sp.Basic) -> sp.Expr:
+    """How much more than its bound a radicand is, over what its bound is `BOUNDARY` of: a number, whatever the unit of length."""
+    radicand, bound = condition.args
+    return radicand / (-bound / BOUNDARY).as_coeff_Mul()[1] + BOUNDARY
+
+
 def trial_of(
     statements: Sequence[Statement], value: sp.Expr, angles: Sequence[tuple[sp.Symbol, sp.Symbol]]
 ) -> Trial:
     """A trial of solved statements; `angles` are those of partial steps, each with what is taken where it is free."""
     guards = [s.condition for s in statements if isinstance(s, Require)]
-    guard = sp.Add(guards[0].lhs, -guards[0].rhs) if guards else sp.Integer(1)
+    guard = _without_unit(guards[0]) if guards else sp.Integer(1)
     found: list[Let] = []
     choices: dict[sp.Expr, sp.Expr] = {}
     conditions: dict[sp.Expr, sp.Basic] = {}

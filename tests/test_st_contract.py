@@ -18,6 +18,7 @@ FILES = {str(p.relative_to(OUTPUT / "st")): p.read_text(encoding="utf-8") for p 
 UNITS = [name for name in FILES if not name.startswith(("softkin/", "selftest/"))]
 CONTRACT = load()
 PRIVATE = {"SolveBranch", "SolveOffsetBranch", "TestLimits", "FindPlatform", "EndPointOnFlange", "LimitsOfAxis"}
+PRIVATE |= {"FindRoot", "TryAt", "TryJoint", "FinishRoot"}
 ORIENTATION = ("ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2")
 
 # Every piece of text that is no comment, string or pragma.

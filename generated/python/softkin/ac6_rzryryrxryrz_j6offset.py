@@ -29,8 +29,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 168 additions, 184 multiplications, 44 divisions, 1 square roots, 16 sines
-    inverse: 62794 additions, 106601 multiplications, 18733 divisions, 2315 square roots, 5216 sines
-    inverse, all 16 branches open: 1004209 additions, 1704941 multiplications, 299593 divisions, 37010 square roots, 83456 sines
+    inverse: 62794 additions, 106601 multiplications, 19833 divisions, 2315 square roots, 5216 sines
+    inverse, all 16 branches open: 1004209 additions, 1704941 multiplications, 317193 divisions, 37010 square roots, 83456 sines
     the search along A6: at most 550 passes, all of which are counted
 
 With a lateral offset of axis A6 no closed form is known: the inverse looks for every root along A6, and
@@ -699,10 +699,11 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             + r12_from_q123_tried*slope_cos_q6_tried + slope_r11_from_q123_tried*sin_q6_tried
         )
         slope_residual_tried = -slope_r12_from_q123_before_q6_tried
-        guard = sine_square_q3_tried + 1e-12*swing_scale_q3_tried*swing_scale_q3_tried
+        guard = 1e-12 + sine_square_q3_tried/(swing_scale_q3_tried*swing_scale_q3_tried)
+        slope_guard = slope_sine_square_q3_tried/(swing_scale_q3_tried*swing_scale_q3_tried)
         return (
-            residual_tried, slope_residual_tried, guard, slope_sine_square_q3_tried, cos_q1_tried, sin_q1_tried,
-            cos_q2_tried, sin_q2_tried,
+            residual_tried, slope_residual_tried, guard, slope_guard, cos_q1_tried, sin_q1_tried, cos_q2_tried,
+            sin_q2_tried,
         )
 
     def _finish_root(self, given: Reals) -> Reals | Status:

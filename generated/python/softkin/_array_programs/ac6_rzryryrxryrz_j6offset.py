@@ -305,10 +305,11 @@ class ArrayPrograms(Programs):
             + r12_from_q123_tried*slope_cos_q6_tried + slope_r11_from_q123_tried*sin_q6_tried
         )
         slope_residual_tried = -slope_r12_from_q123_before_q6_tried
-        guard = sine_square_q3_tried + 1e-12*swing_scale_q3_tried*swing_scale_q3_tried
+        guard = 1e-12 + sine_square_q3_tried/(swing_scale_q3_tried*swing_scale_q3_tried)
+        slope_guard = slope_sine_square_q3_tried/(swing_scale_q3_tried*swing_scale_q3_tried)
         return (
-            residual_tried, slope_residual_tried, guard, slope_sine_square_q3_tried, cos_q1_tried, sin_q1_tried,
-            cos_q2_tried, sin_q2_tried,
+            residual_tried, slope_residual_tried, guard, slope_guard, cos_q1_tried, sin_q1_tried, cos_q2_tried,
+            sin_q2_tried,
         )
 
     def finish_root(self, given: Reals, status: Codes) -> Reals:
