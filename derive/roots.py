@@ -138,7 +138,7 @@ def find_roots(trial: Trial, start: Reals) -> At:
     if not len(start):
         return At(np.zeros(0, dtype=int), start, start, np.zeros(0, dtype=int), start)
     cells = _around(trial, start)
-    found = [_vanishing(cells.take(np.arange(len(start))))]
+    found = [_start(trial, start)]
     ends, holding = [cells.take(np.zeros(0, dtype=int))], [cells.take(np.zeros(0, dtype=int))]
     for _ in range(2 * ROUNDS):  # what is closed in on waits until nothing is cut any more: it is one loop for all rows
         if not len(cells):
@@ -176,11 +176,23 @@ def _vanishing(cells: Cells) -> At:
     return _places(cells.take(is_root), cells.low[is_root])
 
 
+def _start(trial: Trial, start: Reals) -> At:
+    """The starts that are roots themselves: a path stands there."""
+    rows = np.arange(len(start))
+    place = At(rows, start, np.ones(len(rows)), np.full(len(rows), -1), np.zeros(len(rows)))
+    said = trial(place)
+    is_root = (np.abs(said[:, VALUE]) <= VANISHING) & (said[:, GUARD] >= 0.0)
+    return At(rows[is_root], start[is_root], place.side[is_root], place.freed[is_root], place.angle[is_root])
+
+
 def _around(trial: Trial, start: Reals) -> Cells:
-    """The first cells: number 0 of every row, which begins at its start, then number 1, and so on."""
+    """The first cells: number 0 of every row, then number 1, and so on.
+
+    None ends at the start, where value and guard may vanish.
+    """
     count, width = len(start), 2.0 * np.pi / CELLS
     rows = np.tile(np.arange(count), CELLS)
-    base = (start[None, :] + width * np.arange(CELLS)[:, None]).ravel()
+    base = (start[None, :] + width * (np.arange(CELLS)[:, None] + 0.5)).ravel()
     zero, one = np.zeros(len(rows)), np.ones(len(rows))
     empty = np.empty((len(rows), 0))
     cells = Cells(rows, base, np.full(len(rows), width), zero > 0.0, 0 * rows, zero, one, empty, empty)

@@ -66,8 +66,8 @@ def _finished(
 
 
 def _scanned(scan: Scan, start: float, given: Values) -> list[Said]:
-    """What the trial says at the ends of the first cells, which is asked for all of them at once."""
-    joint = start + 2.0 * pi / CELLS * np.arange(CELLS)
+    """What the trial says at the ends of the first cells, none of which is the start; asked for all of them at once."""
+    joint = start + 2.0 * pi / CELLS * (np.arange(CELLS) + 0.5)
     place = {"tried": joint, "side": 1.0, "freed": -1.0, "freed_angle": 0.0}
     with np.errstate(all="ignore"):
         said = scan(tuple(place[v] if isinstance(v, str) else v for v in given), np.zeros(CELLS, np.uint8))
@@ -102,10 +102,9 @@ class _Search:
         width = 2.0 * pi / CELLS
         self.trials += CELLS
         said = [(value, slope * width, guard, rate * width, *rest) for value, slope, guard, rate, *rest in ends]
-        if abs(said[0][0]) <= VANISHING and said[0][2] >= 0.0:
-            self.found.append((start, 1.0, -1.0, 0.0))
+        self.offer(start, 0.0, False, 0.0, self.said(start, 0.0, False, 0.0))
         for k in range(CELLS):
-            cells: list[Cell] = [(start + k * width, width, False, 0, 0.0, said[k], 1.0, said[(k + 1) % CELLS])]
+            cells: list[Cell] = [(start + (k + 0.5) * width, width, False, 0, 0.0, said[k], 1.0, said[(k + 1) % CELLS])]
             while cells:
                 cells += self.cut(cells.pop())
         return self.found
