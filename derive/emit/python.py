@@ -42,6 +42,7 @@ from derive.program import (
 )
 
 name = "python"
+_OF_THE_SEARCH = tuple("ASIDE CELLS CLOSING FINEST FLAT GAP NARROW NEAR_ZERO RESERVE RIM SEAM TOUCHED TURNED VANISHING".split())
 
 _FIXED = (
     "pyproject.toml",
@@ -120,6 +121,7 @@ def _templates() -> Environment:
         "largest": literal(float(LARGEST)),
         "rotation": rotation_functions(),
         "largest_error": literal(float(ROTATION)),
+        "search_constants": {name: literal(getattr(roots, name)) for name in _OF_THE_SEARCH},
         "exact": literal(float(EXACT_ROTATION)),
         "one_turn": literal(int(ONE_TURN)),
         "pivot": literal(float(PIVOT)),

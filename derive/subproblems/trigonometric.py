@@ -157,7 +157,7 @@ def _is_square(value: sp.Expr) -> bool:
 def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _Amplitude) -> Binding:
     sigma = real(f"sigma_{angle.name}")
     turned = (amplitude.cos_unit, amplitude.sin_unit) != (1, 0)
-    words = ("swing_scale" if turned else "scale", "one_less_cos", "one_plus_cos", "sine_square", "twice_scale", "divisor_of_cos")
+    words = ("swing_scale" if turned else "scale", "one_less_cos", "one_plus_cos", "sine_square", "both", "sum")
     scale, less_cos, plus_cos, square, twice, divisor = (real(f"{word}_{angle.name}") for word in words)
     cos_name = real(f"cos_swing_{angle.name}") if turned else cosine(angle)
     sin_name = real(f"sin_swing_{angle.name}") if turned else sine(angle)

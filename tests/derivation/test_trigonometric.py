@@ -95,7 +95,7 @@ def test_both_roots(name: str, link_1: float, link_2: float, p: float, q: float,
     roots = {}
     for sigma in (1.0, -1.0):
         found, status = solved(case, values, sigma)
-        if h < 1e-8 * link_1:  # too short to be aimed, or nearly
+        if h < 1e-8 * link_1 * max(1.0, link_1):  # too short to be aimed, or nearly
             assert all_finite(found)
             return
         assert status is Status.OK

@@ -70,11 +70,11 @@ FIVE_BAR, TRIPOD, DELTA = "Kin_P2C_Type1", "Kin_Tripod_Rotary", "Kin_Delta_P3C_T
 ALIGNED = "(rod_1_x*rod_2_y - rod_1_y*rod_2_x)"
 FAULTS = {
     "a knee on the other side": Fault(
-        FIVE_BAR, "root(product_a1)*sigma_knee_1", "-root(product_a1)*sigma_knee_1",
+        FIVE_BAR, "root(sine_square_a1)*sigma_knee_1", "-root(sine_square_a1)*sigma_knee_1",
         "test_round_trip.test_the_configuration_selects_the_same_axes",
     ),
     "a knee that has one side": Fault(
-        FIVE_BAR, "root(product_a1)*sigma_knee_1", "root(product_a1)",
+        FIVE_BAR, "root(sine_square_a1)*sigma_knee_1", "root(sine_square_a1)",
         "test_round_trip.test_the_configuration_selects_the_same_axes",
     ),
     "another byte for a knee": Fault(
@@ -114,11 +114,11 @@ FAULTS = {
         "test_margins.test_type_1_margins_are_those_of_b_and_type_2_of_a",
     ),
     "a leg that reaches too far": Fault(
-        FIVE_BAR, "product_a2 >= -1e-12", "product_a2 >= -1e12",
+        FIVE_BAR, "sine_square_a2 >= -1e-12", "sine_square_a2 >= -1e12",
         "test_reach.test_every_answer_closes_the_loop_on_its_side",
     ),
     "a leg that does not reach its end": Fault(
-        FIVE_BAR, "product_a1 >= -1e-12", "product_a1 >= 1e-2",
+        FIVE_BAR, "sine_square_a1 >= -1e-12", "sine_square_a1 >= 1e-2",
         "test_margins.test_a_way_out_ends_at_a_singularity_or_a_bound",
     ),
     "a slope of the wrong sign": Fault(

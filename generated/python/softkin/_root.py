@@ -11,10 +11,21 @@ from collections.abc import Callable
 from math import acos, atan2, hypot, pi, sqrt
 from typing import Any
 
-import numpy as np
-
-from softkin._roots import ASIDE, CELLS, CLOSING, FINEST, FLAT, GAP, NARROW, NEAR_ZERO, RESERVE, RIM, SEAM, TOUCHED, TURNED, VANISHING
-
+# As in `_roots`, which says what they are.
+ASIDE = 0.47
+CELLS = 72
+CLOSING = 60
+FINEST = 1e-15
+FLAT = 1e-7
+GAP = 1e-6
+NARROW = 1e-6
+NEAR_ZERO = 0.3
+RESERVE = 126
+RIM = 0.999
+SEAM = 0.001
+TOUCHED = 1e-12
+TURNED = 0.7
+VANISHING = 1e-10
 _TRIALS = 550
 _FINISHED = 12
 _PLACE = ("tried", "side", "freed", "freed_angle")
@@ -67,6 +78,8 @@ def _finished(
 
 def _scanned(scan: Scan, start: float, given: Values) -> list[Said]:
     """What the trial says at the ends of the first cells, none of which is the start; asked for all of them at once."""
+    import numpy as np
+
     joint = start + 2.0 * pi / CELLS * (np.arange(CELLS) + 0.5)
     place = {"tried": joint, "side": 1.0, "freed": -1.0, "freed_angle": 0.0}
     with np.errstate(all="ignore"):

@@ -562,7 +562,7 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = (effective_q3_tried + reach_tried - a2)*(a2 + reach_tried - effective_q3_tried)
         # twice the scale, with the rounding of its parts
-        twice_scale_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = goal_r32*j6_offset_x*slope_sin_q6_tried - goal_r31*j6_offset_x*slope_cos_q6_tried
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
@@ -583,24 +583,22 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             (effective_q3_tried + reach_tried - a2)*slope_reach_tried
             + (a2 + reach_tried - effective_q3_tried)*slope_reach_tried
         )
-        if twice_scale_q3_tried > 0.0:
-            divisor_of_cos_q3_tried = twice_scale_q3_tried
-            slope_twice_scale_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-            slope_divisor_of_cos_q3_tried = slope_twice_scale_q3_tried
+        if both_q3_tried > 0.0:
+            sum_q3_tried = both_q3_tried
+            slope_both_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+            slope_sum_q3_tried = slope_both_q3_tried
         else:
-            divisor_of_cos_q3_tried = 1.0
-            slope_divisor_of_cos_q3_tried = 0.0
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
+            sum_q3_tried = 1.0
+            slope_sum_q3_tried = 0.0
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
         root_of_sin_swing_q3_tried = (sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)
-        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*side*wanted_elbow/divisor_of_cos_q3_tried
+        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*side*wanted_elbow/sum_q3_tried
         cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
         sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
         slope_cos_swing_q3_tried = (
-            (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried)/divisor_of_cos_q3_tried
-            - (one_plus_cos_q3_tried - one_less_cos_q3_tried)*slope_divisor_of_cos_q3_tried/(
-                divisor_of_cos_q3_tried*divisor_of_cos_q3_tried
-            )
+            (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried)/sum_q3_tried
+            - (one_plus_cos_q3_tried - one_less_cos_q3_tried)*slope_sum_q3_tried/(sum_q3_tried*sum_q3_tried)
         )
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
@@ -611,10 +609,8 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
             else 0.0
         )
         slope_sin_swing_q3_tried = (
-            2.0*side*slope_root_of_sin_swing_q3_tried*wanted_elbow/divisor_of_cos_q3_tried
-            - 2.0*root_of_sin_swing_q3_tried*side*slope_divisor_of_cos_q3_tried*wanted_elbow/(
-                divisor_of_cos_q3_tried*divisor_of_cos_q3_tried
-            )
+            2.0*side*slope_root_of_sin_swing_q3_tried*wanted_elbow/sum_q3_tried
+            - 2.0*root_of_sin_swing_q3_tried*side*slope_sum_q3_tried*wanted_elbow/(sum_q3_tried*sum_q3_tried)
         )
         slope_cos_q3_tried = (
             a3*slope_cos_swing_q3_tried/effective_q3_tried + d4*slope_sin_swing_q3_tried/effective_q3_tried
@@ -751,13 +747,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = (effective_q3_tried + reach_tried - a2)*(a2 + reach_tried - effective_q3_tried)
         # twice the scale, with the rounding of its parts
-        twice_scale_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        divisor_of_cos_q3_tried = twice_scale_q3_tried if twice_scale_q3_tried > 0.0 else 1.0
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
+        both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        sum_q3_tried = both_q3_tried if both_q3_tried > 0.0 else 1.0
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
         sin_swing_q3_tried = (
-            2.0*(sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)*side*wanted_elbow
-            /divisor_of_cos_q3_tried
+            2.0*(sqrt(sine_square_q3_tried) if sine_square_q3_tried > 0.0 else 0.0)*side*wanted_elbow/sum_q3_tried
         )
         cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
         sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
@@ -1364,13 +1359,12 @@ class Ac6RZRYRYRXRYRZJ6Offset(SearchedInverse):
                 sin_q1_closed = sin(free_a1)
             q1 = arctan2(sin_q1_closed + 0.0, cos_q1_closed + 0.0)
             # twice the scale, with the rounding of its parts
-            twice_scale_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-            divisor_of_cos_q3_closed = twice_scale_q3_closed if twice_scale_q3_closed > 0.0 else 1.0
+            both_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+            sum_q3_closed = both_q3_closed if both_q3_closed > 0.0 else 1.0
             sin_swing_q3_closed = (
-                2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
-                /divisor_of_cos_q3_closed
+                2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow/sum_q3_closed
             )
-            cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
+            cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/sum_q3_closed
             # its reference where it is free
             if reach_closed > 1e-11*machine_scale:
                 arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed

@@ -340,12 +340,11 @@ class PCC(OffsetKinematics):
         if not (sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
             return Status.UNREACHABLE
         # twice the scale, with the rounding of its parts
-        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = twice_scale_a2_from_a1 if twice_scale_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
+        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
         sin_a2_from_a1 = (
-            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
-            /divisor_of_cos_a2_from_a1
+            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
         )
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
@@ -475,12 +474,11 @@ class PCC(OffsetKinematics):
         if not (sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1):
             return Status.UNREACHABLE
         # twice the scale, with the rounding of its parts
-        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = twice_scale_a2_from_a1 if twice_scale_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
+        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
         sin_a2_from_a1 = (
-            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
-            /divisor_of_cos_a2_from_a1
+            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
         )
         # a1: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:

@@ -433,10 +433,10 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
         if not (sine_square_a3 >= -1e-12*scale_a3*scale_a3):
             return Status.UNREACHABLE
         axis_a1 = offset_a1 + z
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
         # a2: linear pair in the x and y equations; its reference where it is free
         if reach > 1e-11*machine_scale:
             arm_along_a2 = link_length_1 + link_length_2*cos_a3
@@ -654,10 +654,10 @@ class Scara4ZCCC(OffsetKinematics, TwistChoice):
             return Status.UNREACHABLE
         a1 = z - point_z  # a1: affine in the z equation
         axis_a1 = a1 + offset_a1
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
         cos_a3 = tool_x*cos_swing_a3/divisor_a3 + tool_y*sin_swing_a3/divisor_a3
         sin_a3 = tool_x*sin_swing_a3/divisor_a3 - tool_y*cos_swing_a3/divisor_a3
         # a2: linear pair in the x and y equations; its reference where it is free

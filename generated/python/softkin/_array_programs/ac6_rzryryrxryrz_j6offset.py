@@ -133,7 +133,7 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = (effective_q3_tried + reach_tried - a2)*(a2 + reach_tried - effective_q3_tried)
         # twice the scale, with the rounding of its parts
-        twice_scale_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
         slope_wrist_z_tried = goal_r32*j6_offset_x*slope_sin_q6_tried - goal_r31*j6_offset_x*slope_cos_q6_tried
         slope_wrist_x_from_q1_tried = (
             slope_wrist_x_tried*cos_q1_tried + slope_wrist_y_tried*sin_q1_tried + slope_cos_q1_tried*wrist_x_tried
@@ -160,31 +160,29 @@ class ArrayPrograms(Programs):
             + (a2 + reach_tried - effective_q3_tried)*slope_reach_tried
         )
 
-        def elsewhere_divisor_of_cos_q3_tried() -> Reals:
-            divisor_of_cos_q3_tried = 1.0
-            slope_divisor_of_cos_q3_tried = 0.0
-            return (divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried)
+        def elsewhere_sum_q3_tried() -> Reals:
+            sum_q3_tried = 1.0
+            slope_sum_q3_tried = 0.0
+            return (sum_q3_tried, slope_sum_q3_tried)
 
-        divisor_of_cos_q3_tried = twice_scale_q3_tried
-        slope_twice_scale_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
-        slope_divisor_of_cos_q3_tried = slope_twice_scale_q3_tried
-        divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried = elsewhere(
-            twice_scale_q3_tried > 0.0,
-            (divisor_of_cos_q3_tried, slope_divisor_of_cos_q3_tried),
-            elsewhere_divisor_of_cos_q3_tried,
+        sum_q3_tried = both_q3_tried
+        slope_both_q3_tried = slope_one_less_cos_q3_tried + slope_one_plus_cos_q3_tried
+        slope_sum_q3_tried = slope_both_q3_tried
+        sum_q3_tried, slope_sum_q3_tried = elsewhere(
+            both_q3_tried > 0.0,
+            (sum_q3_tried, slope_sum_q3_tried),
+            elsewhere_sum_q3_tried,
             (),
         )
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
         root_of_sin_swing_q3_tried = root(sine_square_q3_tried)
-        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*side*wanted_elbow/divisor_of_cos_q3_tried
+        sin_swing_q3_tried = 2.0*root_of_sin_swing_q3_tried*side*wanted_elbow/sum_q3_tried
         cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
         sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
         slope_cos_swing_q3_tried = (
-            (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried)/divisor_of_cos_q3_tried
-            - (one_plus_cos_q3_tried - one_less_cos_q3_tried)*slope_divisor_of_cos_q3_tried/(
-                divisor_of_cos_q3_tried*divisor_of_cos_q3_tried
-            )
+            (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried)/sum_q3_tried
+            - (one_plus_cos_q3_tried - one_less_cos_q3_tried)*slope_sum_q3_tried/(sum_q3_tried*sum_q3_tried)
         )
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
@@ -198,10 +196,8 @@ class ArrayPrograms(Programs):
             0.0,
         )
         slope_sin_swing_q3_tried = (
-            2.0*side*slope_root_of_sin_swing_q3_tried*wanted_elbow/divisor_of_cos_q3_tried
-            - 2.0*root_of_sin_swing_q3_tried*side*slope_divisor_of_cos_q3_tried*wanted_elbow/(
-                divisor_of_cos_q3_tried*divisor_of_cos_q3_tried
-            )
+            2.0*side*slope_root_of_sin_swing_q3_tried*wanted_elbow/sum_q3_tried
+            - 2.0*root_of_sin_swing_q3_tried*side*slope_sum_q3_tried*wanted_elbow/(sum_q3_tried*sum_q3_tried)
         )
         slope_cos_q3_tried = (
             a3*slope_cos_swing_q3_tried/effective_q3_tried + d4*slope_sin_swing_q3_tried/effective_q3_tried
@@ -364,11 +360,11 @@ class ArrayPrograms(Programs):
         # 1 + cosine, times the scale
         one_plus_cos_q3_tried = (effective_q3_tried + reach_tried - a2)*(a2 + reach_tried - effective_q3_tried)
         # twice the scale, with the rounding of its parts
-        twice_scale_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
-        divisor_of_cos_q3_tried = select(twice_scale_q3_tried > 0.0, twice_scale_q3_tried, 1.0)
-        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/divisor_of_cos_q3_tried
+        both_q3_tried = one_less_cos_q3_tried + one_plus_cos_q3_tried
+        sum_q3_tried = select(both_q3_tried > 0.0, both_q3_tried, 1.0)
+        cos_swing_q3_tried = (one_plus_cos_q3_tried - one_less_cos_q3_tried)/sum_q3_tried
         sine_square_q3_tried = one_less_cos_q3_tried*one_plus_cos_q3_tried  # the square of sine times scale
-        sin_swing_q3_tried = 2.0*root(sine_square_q3_tried)*side*wanted_elbow/divisor_of_cos_q3_tried
+        sin_swing_q3_tried = 2.0*root(sine_square_q3_tried)*side*wanted_elbow/sum_q3_tried
         cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
         sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
 
@@ -889,10 +885,10 @@ class ArrayPrograms(Programs):
             )
             q1 = atan2(sin_q1_closed, cos_q1_closed)
             # twice the scale, with the rounding of its parts
-            twice_scale_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-            divisor_of_cos_q3_closed = select(twice_scale_q3_closed > 0.0, twice_scale_q3_closed, 1.0)
-            sin_swing_q3_closed = 2.0*root(sine_square_q3_closed)*sigma_elbow/divisor_of_cos_q3_closed
-            cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
+            both_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+            sum_q3_closed = select(both_q3_closed > 0.0, both_q3_closed, 1.0)
+            sin_swing_q3_closed = 2.0*root(sine_square_q3_closed)*sigma_elbow/sum_q3_closed
+            cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/sum_q3_closed
 
             def elsewhere_cos_q2_closed(free_a2: Real) -> Reals:
                 cos_q2_closed = cos(free_a2)  # its reference where it is free

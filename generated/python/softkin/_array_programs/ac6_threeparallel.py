@@ -783,10 +783,10 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = select(absolute(twice_scale_q3) > 0.0, twice_scale_q3, 1.0)
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
-        sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(divisor_of_cos_q3)
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = select(absolute(both_q3) > 0.0, both_q3, 1.0)
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sin_q3 = 2.0*root(sine_square_q3)*sigma_elbow/absolute(sum_q3)
 
         def elsewhere_direction_x_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -2963,10 +2963,10 @@ class ArrayPrograms(Programs):
         # A1: its turn
         axis_a1_left_down = nearest_period(offset_a1 + degrees(sin_q1_left_down, cos_q1_left_down), near_a1)
         # twice the scale, with the rounding of its parts
-        twice_scale_q3_left_down = one_less_cos_q3_left_down + one_plus_cos_q3_left_down
-        divisor_of_cos_q3_left_down = select(absolute(twice_scale_q3_left_down) > 0.0, twice_scale_q3_left_down, 1.0)
-        cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)/divisor_of_cos_q3_left_down
-        sin_q3_left_up_down = 2.0*root(sine_square_q3_left_down)/absolute(divisor_of_cos_q3_left_down)
+        both_q3_left_down = one_less_cos_q3_left_down + one_plus_cos_q3_left_down
+        sum_q3_left_down = select(absolute(both_q3_left_down) > 0.0, both_q3_left_down, 1.0)
+        cos_q3_left_down = (one_plus_cos_q3_left_down - one_less_cos_q3_left_down)/sum_q3_left_down
+        sin_q3_left_up_down = 2.0*root(sine_square_q3_left_down)/absolute(sum_q3_left_down)
 
         def elsewhere_direction_x_q2_left_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -3247,10 +3247,10 @@ class ArrayPrograms(Programs):
         refusal_left_up = select(sine_square_q3_left_up >= -1e-12*scale_q3*scale_q3, 0.0, 3.0)  # q3: out of reach
         axis_a1_left_up = nearest_period(offset_a1 + degrees(sin_q1_left_up, cos_q1_left_up), near_a1)  # A1: its turn
         # twice the scale, with the rounding of its parts
-        twice_scale_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
-        divisor_of_cos_q3_left_up = select(absolute(twice_scale_q3_left_up) > 0.0, twice_scale_q3_left_up, 1.0)
-        cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)/divisor_of_cos_q3_left_up
-        sin_q3_left_up_up = 2.0*root(sine_square_q3_left_up)/absolute(divisor_of_cos_q3_left_up)
+        both_q3_left_up = one_less_cos_q3_left_up + one_plus_cos_q3_left_up
+        sum_q3_left_up = select(absolute(both_q3_left_up) > 0.0, both_q3_left_up, 1.0)
+        cos_q3_left_up = (one_plus_cos_q3_left_up - one_less_cos_q3_left_up)/sum_q3_left_up
+        sin_q3_left_up_up = 2.0*root(sine_square_q3_left_up)/absolute(sum_q3_left_up)
 
         def elsewhere_direction_x_q2_left_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -3538,12 +3538,10 @@ class ArrayPrograms(Programs):
         # A1: its turn
         axis_a1_right_down = nearest_period(offset_a1 + degrees(sin_q1_right_down, cos_q1_right_down), near_a1)
         # twice the scale, with the rounding of its parts
-        twice_scale_q3_right_down = one_less_cos_q3_right_down + one_plus_cos_q3_right_down
-        divisor_of_cos_q3_right_down = select(
-            absolute(twice_scale_q3_right_down) > 0.0, twice_scale_q3_right_down, 1.0,
-        )
-        cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)/divisor_of_cos_q3_right_down
-        sin_q3_right_up_down = 2.0*root(sine_square_q3_right_down)/absolute(divisor_of_cos_q3_right_down)
+        both_q3_right_down = one_less_cos_q3_right_down + one_plus_cos_q3_right_down
+        sum_q3_right_down = select(absolute(both_q3_right_down) > 0.0, both_q3_right_down, 1.0)
+        cos_q3_right_down = (one_plus_cos_q3_right_down - one_less_cos_q3_right_down)/sum_q3_right_down
+        sin_q3_right_up_down = 2.0*root(sine_square_q3_right_down)/absolute(sum_q3_right_down)
 
         def elsewhere_direction_x_q2_right_up_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -3808,10 +3806,10 @@ class ArrayPrograms(Programs):
         # A1: its turn
         axis_a1_right_up = nearest_period(offset_a1 + degrees(sin_q1_right_up, cos_q1_right_up), near_a1)
         # twice the scale, with the rounding of its parts
-        twice_scale_q3_right_up = one_less_cos_q3_right_up + one_plus_cos_q3_right_up
-        divisor_of_cos_q3_right_up = select(absolute(twice_scale_q3_right_up) > 0.0, twice_scale_q3_right_up, 1.0)
-        cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)/divisor_of_cos_q3_right_up
-        sin_q3_right_up_up = 2.0*root(sine_square_q3_right_up)/absolute(divisor_of_cos_q3_right_up)
+        both_q3_right_up = one_less_cos_q3_right_up + one_plus_cos_q3_right_up
+        sum_q3_right_up = select(absolute(both_q3_right_up) > 0.0, both_q3_right_up, 1.0)
+        cos_q3_right_up = (one_plus_cos_q3_right_up - one_less_cos_q3_right_up)/sum_q3_right_up
+        sin_q3_right_up_up = 2.0*root(sine_square_q3_right_up)/absolute(sum_q3_right_up)
 
         def elsewhere_direction_x_q2_right_up_up(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE

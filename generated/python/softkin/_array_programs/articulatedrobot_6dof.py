@@ -330,10 +330,10 @@ class ArrayPrograms(Programs):
             open_a1,
         )
         axis_a1 = nearest_period(offset_a1 + degrees(sin_q1, cos_q1), near_a1)  # A1: its turn
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = select(twice_scale_q3 > 0.0, twice_scale_q3, 1.0)
-        sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/divisor_of_cos_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = select(both_q3 > 0.0, both_q3, 1.0)
+        sin_swing_q3 = -2.0*root(sine_square_q3)*sigma_elbow/sum_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
 
         def elsewhere_cos_q2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -750,10 +750,10 @@ class ArrayPrograms(Programs):
         )
         axis_a1_front = nearest_period(offset_a1 + degrees(sin_q1_front, cos_q1_front), near_a1)  # A1: its turn
         # twice the scale, with the rounding of its parts
-        twice_scale_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
-        divisor_of_cos_q3_front = select(twice_scale_q3_front > 0.0, twice_scale_q3_front, 1.0)
-        sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/divisor_of_cos_q3_front
-        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/divisor_of_cos_q3_front
+        both_q3_front = one_less_cos_q3_front + one_plus_cos_q3_front
+        sum_q3_front = select(both_q3_front > 0.0, both_q3_front, 1.0)
+        sin_swing_q3_front_up = 2.0*root(sine_square_q3_front)/sum_q3_front
+        cos_swing_q3_front = (one_plus_cos_q3_front - one_less_cos_q3_front)/sum_q3_front
 
         def elsewhere_cos_q2_front_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -1006,11 +1006,10 @@ class ArrayPrograms(Programs):
         # q3: out of reach
         refusal_back = select(sine_square_q3_back >= -1e-12*swing_scale_q3*swing_scale_q3, 0.0, 3.0)
         axis_a1_back = nearest_period(offset_a1 + degrees(sin_q1_back, cos_q1_back), near_a1)  # A1: its turn
-        # twice the scale, with the rounding of its parts
-        twice_scale_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back
-        divisor_of_cos_q3_back = select(twice_scale_q3_back > 0.0, twice_scale_q3_back, 1.0)
-        sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/divisor_of_cos_q3_back
-        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/divisor_of_cos_q3_back
+        both_q3_back = one_less_cos_q3_back + one_plus_cos_q3_back  # twice the scale, with the rounding of its parts
+        sum_q3_back = select(both_q3_back > 0.0, both_q3_back, 1.0)
+        sin_swing_q3_back_up = 2.0*root(sine_square_q3_back)/sum_q3_back
+        cos_swing_q3_back = (one_plus_cos_q3_back - one_less_cos_q3_back)/sum_q3_back
 
         def elsewhere_cos_q2_back_down(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE

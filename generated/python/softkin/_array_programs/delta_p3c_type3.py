@@ -267,10 +267,10 @@ class ArrayPrograms(Programs):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
-        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a1 = select(twice_scale_a1 > 0.0, twice_scale_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_knee_1/divisor_of_cos_a1
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_knee_1/sum_a1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
         # rod 1
         pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
@@ -281,10 +281,10 @@ class ArrayPrograms(Programs):
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
         pivot_1_z = -inner_arm_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a2 = select(twice_scale_a2 > 0.0, twice_scale_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/divisor_of_cos_a2
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_knee_2/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
         # rod 2
         pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
@@ -295,10 +295,10 @@ class ArrayPrograms(Programs):
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z = -inner_arm_2*sin_a2  # rod 2
         rod_2_z = z - pivot_2_z
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = select(twice_scale_a3 > 0.0, twice_scale_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sin_swing_a3 = -2.0*root(sine_square_a3)*sigma_knee_3/sum_a3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
         # rod 3
         pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
@@ -466,10 +466,10 @@ class ArrayPrograms(Programs):
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
-        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a1 = select(twice_scale_a1 > 0.0, twice_scale_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-        sin_swing_a1_inward = 2.0*root(sine_square_a1)/divisor_of_cos_a1
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sin_swing_a1_inward = 2.0*root(sine_square_a1)/sum_a1
         cos_a1_outward = along_a1*cos_swing_a1/divisor_a1 - z*sin_swing_a1_inward/divisor_a1
         # rod 1
         pivot_1_x_outward = (
@@ -484,10 +484,10 @@ class ArrayPrograms(Programs):
         sin_a1_outward = -along_a1*sin_swing_a1_inward/divisor_a1 - z*cos_swing_a1/divisor_a1
         pivot_1_z_outward = -inner_arm_1*sin_a1_outward  # rod 1
         rod_1_z_outward = z - pivot_1_z_outward
-        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a2 = select(twice_scale_a2 > 0.0, twice_scale_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-        sin_swing_a2_inward = 2.0*root(sine_square_a2)/divisor_of_cos_a2
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sin_swing_a2_inward = 2.0*root(sine_square_a2)/sum_a2
         cos_a2_outward = along_a2*cos_swing_a2/divisor_a2 - z*sin_swing_a2_inward/divisor_a2
         # rod 2
         pivot_2_x_outward = (
@@ -502,10 +502,10 @@ class ArrayPrograms(Programs):
         sin_a2_outward = -along_a2*sin_swing_a2_inward/divisor_a2 - z*cos_swing_a2/divisor_a2
         pivot_2_z_outward = -inner_arm_2*sin_a2_outward  # rod 2
         rod_2_z_outward = z - pivot_2_z_outward
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = select(twice_scale_a3 > 0.0, twice_scale_a3, 1.0)
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sin_swing_a3_inward = 2.0*root(sine_square_a3)/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sin_swing_a3_inward = 2.0*root(sine_square_a3)/sum_a3
         cos_a3_outward = along_a3*cos_swing_a3/divisor_a3 - z*sin_swing_a3_inward/divisor_a3
         # rod 3
         pivot_3_x_outward = (

@@ -167,10 +167,10 @@ class ArrayPrograms(Programs):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a1 = select(twice_scale_a1 > 0.0, twice_scale_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/divisor_of_cos_a1
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sin_swing_a1 = -2.0*root(sine_square_a1)*sigma_t/sum_a1
         sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
         # rod rear
         span_rear_x = (
@@ -209,10 +209,10 @@ class ArrayPrograms(Programs):
         rod_1_x = x - centre_1_x
         centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
         rod_1_y = y - centre_1_y
-        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a2 = select(twice_scale_a2 > 0.0, twice_scale_a2, 1.0)
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/divisor_of_cos_a2
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = select(both_a2 > 0.0, both_a2, 1.0)
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sin_swing_a2 = -2.0*root(sine_square_a2)*sigma_w/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
         # rod rear
         pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
@@ -310,10 +310,10 @@ class ArrayPrograms(Programs):
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
-        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a1 = select(twice_scale_a1 > 0.0, twice_scale_a1, 1.0)
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-        sin_swing_a1_right = 2.0*root(sine_square_a1)/divisor_of_cos_a1
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = select(both_a1 > 0.0, both_a1, 1.0)
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sin_swing_a1_right = 2.0*root(sine_square_a1)/sum_a1
         sin_a1_left = span_upper_x*cos_swing_a1/divisor_a1 - span_upper_y*sin_swing_a1_right/divisor_a1
         cos_a1_left = span_upper_y*cos_swing_a1/divisor_a1 + span_upper_x*sin_swing_a1_right/divisor_a1
         # rod rear
@@ -351,12 +351,11 @@ class ArrayPrograms(Programs):
         one_plus_cos_a2_left = (
             (link_length_4 + link_length_5 - divisor_a2_left)*(divisor_a2_left + link_length_4 - link_length_5)
         )
-        # twice the scale, with the rounding of its parts
-        twice_scale_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left
-        divisor_of_cos_a2_left = select(twice_scale_a2_left > 0.0, twice_scale_a2_left, 1.0)
-        cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/divisor_of_cos_a2_left
+        both_a2_left = one_less_cos_a2_left + one_plus_cos_a2_left  # twice the scale, with the rounding of its parts
+        sum_a2_left = select(both_a2_left > 0.0, both_a2_left, 1.0)
+        cos_swing_a2_left = (one_plus_cos_a2_left - one_less_cos_a2_left)/sum_a2_left
         sine_square_a2_left = one_less_cos_a2_left*one_plus_cos_a2_left  # the square of sine times scale
-        sin_swing_a2_left_right = 2.0*root(sine_square_a2_left)/divisor_of_cos_a2_left
+        sin_swing_a2_left_right = 2.0*root(sine_square_a2_left)/sum_a2_left
         cos_a2_left_left = (
             across_a2_left*sin_swing_a2_left_right/divisor_a2_left + along_a2_left*cos_swing_a2_left/divisor_a2_left
         )
@@ -500,11 +499,11 @@ class ArrayPrograms(Programs):
             (link_length_4 + link_length_5 - divisor_a2_right)*(divisor_a2_right + link_length_4 - link_length_5)
         )
         # twice the scale, with the rounding of its parts
-        twice_scale_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right
-        divisor_of_cos_a2_right = select(twice_scale_a2_right > 0.0, twice_scale_a2_right, 1.0)
-        cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/divisor_of_cos_a2_right
+        both_a2_right = one_less_cos_a2_right + one_plus_cos_a2_right
+        sum_a2_right = select(both_a2_right > 0.0, both_a2_right, 1.0)
+        cos_swing_a2_right = (one_plus_cos_a2_right - one_less_cos_a2_right)/sum_a2_right
         sine_square_a2_right = one_less_cos_a2_right*one_plus_cos_a2_right  # the square of sine times scale
-        sin_swing_a2_right_right = 2.0*root(sine_square_a2_right)/divisor_of_cos_a2_right
+        sin_swing_a2_right_right = 2.0*root(sine_square_a2_right)/sum_a2_right
         cos_a2_right_left = (
             across_a2_right*sin_swing_a2_right_right/divisor_a2_right
             + along_a2_right*cos_swing_a2_right/divisor_a2_right

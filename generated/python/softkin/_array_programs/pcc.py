@@ -95,10 +95,10 @@ class ArrayPrograms(Programs):
         # a2_from_a1: out of reach
         require(status, sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1, Status.UNREACHABLE)
         # twice the scale, with the rounding of its parts
-        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = select(twice_scale_a2_from_a1 > 0.0, twice_scale_a2_from_a1, 1.0)
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
-        sin_a2_from_a1 = 2.0*root(sine_square_a2_from_a1)*sigma_elbow/divisor_of_cos_a2_from_a1
+        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1 = 2.0*root(sine_square_a2_from_a1)*sigma_elbow/sum_a2_from_a1
 
         def elsewhere_direction_x_a1(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
@@ -193,10 +193,10 @@ class ArrayPrograms(Programs):
         # a2_from_a1: out of reach
         require(status, sine_square_a2_from_a1 >= -1e-12*scale_a2_from_a1*scale_a2_from_a1, Status.UNREACHABLE)
         # twice the scale, with the rounding of its parts
-        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = select(twice_scale_a2_from_a1 > 0.0, twice_scale_a2_from_a1, 1.0)
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
-        sin_a2_from_a1_right = 2.0*root(sine_square_a2_from_a1)/divisor_of_cos_a2_from_a1
+        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        sum_a2_from_a1 = select(both_a2_from_a1 > 0.0, both_a2_from_a1, 1.0)
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1_right = 2.0*root(sine_square_a2_from_a1)/sum_a2_from_a1
 
         def elsewhere_direction_x_a1_right(ref_a1: Real) -> Reals:
             free_a1 = (ref_a1 - offset_a1)*DEGREE

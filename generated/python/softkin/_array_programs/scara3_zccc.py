@@ -130,10 +130,10 @@ class ArrayPrograms(Programs):
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*scale_a3*scale_a3, Status.UNREACHABLE)
         axis_a1 = offset_a1 + z
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = select(twice_scale_a3 > 0.0, twice_scale_a3, 1.0)
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sin_a3 = 2.0*root(sine_square_a3)*sigma_elbow/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sin_a3 = 2.0*root(sine_square_a3)*sigma_elbow/sum_a3
 
         def elsewhere_direction_x_a2(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE
@@ -253,10 +253,10 @@ class ArrayPrograms(Programs):
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*scale_a3*scale_a3, Status.UNREACHABLE)
         axis_a1 = offset_a1 + z
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = select(twice_scale_a3 > 0.0, twice_scale_a3, 1.0)
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sin_a3_right = 2.0*root(sine_square_a3)/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = select(both_a3 > 0.0, both_a3, 1.0)
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sin_a3_right = 2.0*root(sine_square_a3)/sum_a3
 
         def elsewhere_direction_x_a2_right(ref_a2: Real) -> Reals:
             free_a2 = (ref_a2 - offset_a2)*DEGREE

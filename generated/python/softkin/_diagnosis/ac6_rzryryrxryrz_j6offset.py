@@ -111,13 +111,12 @@ def branch(
             cos_q1_closed = cos(free_a1)
             sin_q1_closed = sin(free_a1)
         q1 = arctan2(sin_q1_closed + 0.0, cos_q1_closed + 0.0)
-        twice_scale_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
-        divisor_of_cos_q3_closed = twice_scale_q3_closed if twice_scale_q3_closed > 0.0 else 1.0
+        both_q3_closed = one_less_cos_q3_closed + one_plus_cos_q3_closed
+        sum_q3_closed = both_q3_closed if both_q3_closed > 0.0 else 1.0
         sin_swing_q3_closed = (
-            2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow
-            /divisor_of_cos_q3_closed
+            2.0*(sqrt(sine_square_q3_closed) if sine_square_q3_closed > 0.0 else 0.0)*sigma_elbow/sum_q3_closed
         )
-        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/divisor_of_cos_q3_closed
+        cos_swing_q3_closed = (one_plus_cos_q3_closed - one_less_cos_q3_closed)/sum_q3_closed
         if reach_closed > 1e-11*machine_scale:
             arm_along_q2_closed = effective_q3_tried*sin_swing_q3_closed
             arm_across_q2_closed = a2 + effective_q3_tried*cos_swing_q3_closed

@@ -144,10 +144,10 @@ def branch(
     axis_a1 = offset_a1 + arctan2(sin_q1, cos_q1 + 0.0)/DEGREE
     if not -180.000000001 <= axis_a1 - near_a1 < 179.999999999:
         axis_a1 = nearest_period(axis_a1, near_a1)
-    twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3
-    divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
-    sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
-    cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+    both_q3 = one_less_cos_q3 + one_plus_cos_q3
+    sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+    sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
+    cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
     if reach > 1e-11*machine_scale:
         arm_along_q2 = -effective_q3*sin_swing_q3
         arm_across_q2 = a2 + effective_q3*cos_swing_q3

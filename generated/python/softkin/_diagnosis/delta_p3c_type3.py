@@ -173,10 +173,10 @@ def branch(
             )
         )
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
-    twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1
-    divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
-    cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-    sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+    both_a1 = one_less_cos_a1 + one_plus_cos_a1
+    sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+    cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+    sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
     cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
     pivot_1_x = base_radius_1*cos_azimuth_1 + inner_arm_1*cos_a1*cos_azimuth_1 - tcp_radius_1*cos_azimuth_1
     rod_1_x = x - pivot_1_x
@@ -185,10 +185,10 @@ def branch(
     sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
     pivot_1_z = -inner_arm_1*sin_a1
     rod_1_z = z - pivot_1_z
-    twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2
-    divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
-    cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-    sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+    both_a2 = one_less_cos_a2 + one_plus_cos_a2
+    sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+    cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+    sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
     cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
     pivot_2_x = base_radius_2*cos_azimuth_2 + inner_arm_2*cos_a2*cos_azimuth_2 - tcp_radius_2*cos_azimuth_2
     rod_2_x = x - pivot_2_x
@@ -197,10 +197,10 @@ def branch(
     sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
     pivot_2_z = -inner_arm_2*sin_a2
     rod_2_z = z - pivot_2_z
-    twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3
-    divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
-    cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-    sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+    both_a3 = one_less_cos_a3 + one_plus_cos_a3
+    sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+    cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+    sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
     cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
     pivot_3_x = base_radius_3*cos_azimuth_3 + inner_arm_3*cos_a3*cos_azimuth_3 - tcp_radius_3*cos_azimuth_3
     rod_3_x = x - pivot_3_x

@@ -62,10 +62,10 @@ def branch(
             + 0.5*abs(divisor_a1 + link_length_1 + link_length_2) - divisor_a1 - link_length_1 - link_length_2
         )
         return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
-    twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1
-    divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
-    cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-    sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/divisor_of_cos_a1
+    both_a1 = one_less_cos_a1 + one_plus_cos_a1
+    sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+    cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+    sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_t/sum_a1
     sin_a1 = span_upper_x*cos_swing_a1/divisor_a1 + span_upper_y*sin_swing_a1/divisor_a1
     span_rear_x = (
         link_length_3*swap_xy*x/link_length_2 - link_length_3*x/link_length_2
@@ -105,10 +105,10 @@ def branch(
     rod_1_x = x - centre_1_x
     centre_1_y = pivot_upper_y + pivot_upper_x*swap_xy - pivot_upper_y*swap_xy
     rod_1_y = y - centre_1_y
-    twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2
-    divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
-    cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-    sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/divisor_of_cos_a2
+    both_a2 = one_less_cos_a2 + one_plus_cos_a2
+    sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+    cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+    sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_w/sum_a2
     cos_a2 = along_a2*cos_swing_a2/divisor_a2 - across_a2*sin_swing_a2/divisor_a2
     pivot_rear_x = link_length_1*sin_a1 + link_length_1*link_length_3*sin_a1/link_length_2 - link_length_5*cos_a2
     sin_a2 = across_a2*cos_swing_a2/divisor_a2 + along_a2*sin_swing_a2/divisor_a2

@@ -75,20 +75,20 @@ def branch(
             - inner_arm - outer_arm
         )
         return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-    twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1
-    divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
-    cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-    sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+    both_a1 = one_less_cos_a1 + one_plus_cos_a1
+    sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+    cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+    sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
     cos_a1 = span_1_x*cos_swing_a1/divisor_a1 - y*sin_swing_a1/divisor_a1
     pivot_1_x = tcp_displacement - displacement - inner_arm*cos_a1
     rod_1_x = x - pivot_1_x
     sin_a1 = y*cos_swing_a1/divisor_a1 + span_1_x*sin_swing_a1/divisor_a1
     pivot_1_y = -inner_arm*sin_a1
     rod_1_y = y - pivot_1_y
-    twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2
-    divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
-    cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-    sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+    both_a2 = one_less_cos_a2 + one_plus_cos_a2
+    sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+    cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+    sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
     cos_a2 = span_2_x*cos_swing_a2/divisor_a2 + y*sin_swing_a2/divisor_a2
     pivot_2_x = displacement + inner_arm*cos_a2 - tcp_displacement
     rod_2_x = x - pivot_2_x

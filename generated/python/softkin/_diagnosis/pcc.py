@@ -51,12 +51,11 @@ def branch(
             - link_length_1 - link_length_2 - reach
         )
         return Diagnosis(Status.UNREACHABLE, "a2_from_a1: out of reach [u]", missing)
-    twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-    divisor_of_cos_a2_from_a1 = twice_scale_a2_from_a1 if twice_scale_a2_from_a1 > 0.0 else 1.0
-    cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
+    both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+    sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+    cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
     sin_a2_from_a1 = (
-        2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
-        /divisor_of_cos_a2_from_a1
+        2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
     )
     if reach > 1e-11*machine_scale:
         arm_along_a1 = link_length_1 + link_length_2*cos_a2_from_a1

@@ -49,10 +49,10 @@ def branch(
             - arm_length_1 - arm_length_2 - reach
         )
         return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
-    twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2
-    divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
-    cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-    sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a2
+    both_a2 = one_less_cos_a2 + one_plus_cos_a2
+    sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+    cos_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+    sin_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_elbow/sum_a2
     if reach > 1e-11*machine_scale:
         arm_along_a1 = arm_length_1 + arm_length_2*cos_a2
         arm_across_a1 = arm_length_2*sin_a2

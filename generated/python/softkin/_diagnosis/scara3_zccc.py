@@ -65,10 +65,10 @@ def branch(
         )
         return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
     axis_a1 = offset_a1 + z
-    twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3
-    divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
-    cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-    sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
+    both_a3 = one_less_cos_a3 + one_plus_cos_a3
+    sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+    cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+    sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
     if reach > 1e-11*machine_scale:
         arm_along_a2 = link_length_1 + link_length_2*cos_a3
         arm_across_a2 = link_length_2*sin_a3

@@ -241,11 +241,11 @@ def unrolled(k: Constants) -> Unrolled:
         a2_plus_reach = a2 + reach
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sine_square_q3_down = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(divisor_of_cos_q3)
+        sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -393,11 +393,11 @@ def unrolled(k: Constants) -> Unrolled:
         a2_plus_reach = a2 + reach
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sine_square_q3_up = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(divisor_of_cos_q3)
+        sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -619,11 +619,11 @@ def unrolled(k: Constants) -> Unrolled:
         a2_plus_reach = a2 + reach
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sine_square_q3_down = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(divisor_of_cos_q3)
+        sin_q3 = 2.0*(sqrt(sine_square_q3_down) if sine_square_q3_down > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -765,11 +765,11 @@ def unrolled(k: Constants) -> Unrolled:
         a2_plus_reach = a2 + reach
         one_less_cos_q3 = (a2_minus_reach + a3)*(a2_plus_reach + a3)  # 1 - cosine, times the scale
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         sine_square_q3_up = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(divisor_of_cos_q3)
+        sin_q3 = 2.0*(sqrt(sine_square_q3_up) if sine_square_q3_up > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3 + 0.0, a2 + a3*cos_q3 + 0.0)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1 + 0.0, wrist_x_from_q1 + 0.0)
@@ -1098,10 +1098,10 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_left_down = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_left = offset_a1 + arctan2(sin_q1_before_q1_for_q3_left, cos_q1_before_q1_for_q3_left)*RADIAN
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1230,10 +1230,10 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_left_up = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1387,10 +1387,10 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_right_down = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_right = offset_a1 + arctan2(sin_q1_before_q1_for_q3_right, cos_q1_before_q1_for_q3_right)*RADIAN
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1519,10 +1519,10 @@ def unrolled(k: Constants) -> Unrolled:
         one_plus_cos_q3 = (a3 - a2_minus_reach)*(a2_plus_reach - a3)  # 1 + cosine, times the scale
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_right_up = 0.0 if sine_square_q3 >= -scale_q3_squared_times_rounding else 3.0  # q3: out of reach
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(divisor_of_cos_q3)
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_q2 = arctan2(a3*sin_q3, a2 + a3*cos_q3)
             angle_of_wrist_x_from_q1 = arctan2(wrist_y_from_q1, wrist_x_from_q1)
@@ -1756,10 +1756,10 @@ def unrolled(k: Constants) -> Unrolled:
         # q3: out of reach
         if not (sine_square_q3 >= -scale_q3_squared_times_rounding):
             return None
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if abs(twice_scale_q3) > 0.0 else 1.0
-        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
-        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(divisor_of_cos_q3)
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if abs(both_q3) > 0.0 else 1.0
+        cos_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
+        sin_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/abs(sum_q3)
         if reach > machine_scale_times_free_angle:
             angle_q2 = arctan2(wrist_y_from_q1, wrist_x_from_q1) - arctan2(a3*sin_q3, a2 + a3*cos_q3)
         else:

@@ -147,21 +147,21 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return 8*(3.0,)
-        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/divisor_of_cos_a1
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
         cos_swing_a1_times_z_by_divisor_a1 = z*cos_swing_a1/divisor_a1
         along_a1_times_sin_swing_a1_by_divisor_a1 = along_a1*sin_swing_a1/divisor_a1
         sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
-        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
@@ -173,11 +173,11 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
         rod_2_z_outward = minus_pivot_2_z + z
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
-        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
         sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
@@ -484,11 +484,11 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return 8*(None,)
-        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
-        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/divisor_of_cos_a1
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        sin_swing_a1 = 2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)/sum_a1
         sin_swing_a1_times_z_by_divisor_a1 = z*sin_swing_a1/divisor_a1
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
         along_a1_times_cos_swing_a1_by_divisor_a1 = along_a1*cos_swing_a1/divisor_a1
         cos_a1 = along_a1_times_cos_swing_a1_by_divisor_a1 - sin_swing_a1_times_z_by_divisor_a1
         pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
@@ -500,11 +500,11 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = -along_a1_times_sin_swing_a1_by_divisor_a1 - cos_swing_a1_times_z_by_divisor_a1
         minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
         rod_1_z = minus_pivot_1_z + z
-        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
-        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/divisor_of_cos_a2
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        sin_swing_a2 = 2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)/sum_a2
         sin_swing_a2_times_z_by_divisor_a2 = z*sin_swing_a2/divisor_a2
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
         along_a2_times_cos_swing_a2_by_divisor_a2 = along_a2*cos_swing_a2/divisor_a2
         cos_a2 = along_a2_times_cos_swing_a2_by_divisor_a2 - sin_swing_a2_times_z_by_divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
@@ -516,11 +516,11 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = -along_a2_times_sin_swing_a2_by_divisor_a2 - cos_swing_a2_times_z_by_divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
         rod_2_z_outward = minus_pivot_2_z + z
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
-        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        sin_swing_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
         sin_swing_a3_times_z_by_divisor_a3 = z*sin_swing_a3/divisor_a3
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
         along_a3_times_cos_swing_a3_by_divisor_a3 = along_a3*cos_swing_a3/divisor_a3
         cos_a3 = along_a3_times_cos_swing_a3_by_divisor_a3 - sin_swing_a3_times_z_by_divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
@@ -723,10 +723,10 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
             return None
-        twice_scale_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a1 = twice_scale_a1 if twice_scale_a1 > 0.0 else 1.0
-        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/divisor_of_cos_a1
-        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/divisor_of_cos_a1
+        both_a1 = one_less_cos_a1 + one_plus_cos_a1  # twice the scale, with the rounding of its parts
+        sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
+        cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1
+        sin_swing_a1 = -2.0*(sqrt(sine_square_a1) if sine_square_a1 > 0.0 else 0.0)*sigma_knee_1/sum_a1
         cos_a1 = along_a1*cos_swing_a1/divisor_a1 + z*sin_swing_a1/divisor_a1
         pivot_1_x = constant_part + cos_a1*cos_azimuth_1_times_inner_arm_1  # rod 1
         rod_1_x = x - pivot_1_x
@@ -735,10 +735,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = along_a1*sin_swing_a1/divisor_a1 - z*cos_swing_a1/divisor_a1
         minus_pivot_1_z = inner_arm_1*sin_a1  # rod 1
         rod_1_z = minus_pivot_1_z + z
-        twice_scale_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a2 = twice_scale_a2 if twice_scale_a2 > 0.0 else 1.0
-        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/divisor_of_cos_a2
-        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/divisor_of_cos_a2
+        both_a2 = one_less_cos_a2 + one_plus_cos_a2  # twice the scale, with the rounding of its parts
+        sum_a2 = both_a2 if both_a2 > 0.0 else 1.0
+        cos_swing_a2 = (one_plus_cos_a2 - one_less_cos_a2)/sum_a2
+        sin_swing_a2 = -2.0*(sqrt(sine_square_a2) if sine_square_a2 > 0.0 else 0.0)*sigma_knee_2/sum_a2
         cos_a2 = along_a2*cos_swing_a2/divisor_a2 + z*sin_swing_a2/divisor_a2
         pivot_2_x = constant_part_3 + cos_a2*cos_azimuth_2_times_inner_arm_2  # rod 2
         rod_2_x = x - pivot_2_x
@@ -747,10 +747,10 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - z*cos_swing_a2/divisor_a2
         minus_pivot_2_z = inner_arm_2*sin_a2  # rod 2
         rod_2_z = minus_pivot_2_z + z
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
-        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_swing_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sin_swing_a3 = -2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_knee_3/sum_a3
         cos_a3 = along_a3*cos_swing_a3/divisor_a3 + z*sin_swing_a3/divisor_a3
         pivot_3_x = constant_part_5 + cos_a3*cos_azimuth_3_times_inner_arm_3  # rod 3
         rod_3_x = x - pivot_3_x

@@ -67,12 +67,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
             return 2*(3.0,)
         # twice the scale, with the rounding of its parts
-        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = twice_scale_a2_from_a1 if twice_scale_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
-        sin_a2_from_a1 = (
-            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/divisor_of_cos_a2_from_a1
-        )
+        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1 = 2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/sum_a2_from_a1
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(
                 link_length_2*sin_a2_from_a1 + 0.0, link_length_1 + link_length_2*cos_a2_from_a1 + 0.0,
@@ -149,12 +147,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
             return 2*(None,)
         # twice the scale, with the rounding of its parts
-        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = twice_scale_a2_from_a1 if twice_scale_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
-        sin_a2_from_a1 = (
-            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/divisor_of_cos_a2_from_a1
-        )
+        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
+        sin_a2_from_a1 = 2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)/sum_a2_from_a1
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a1 = arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)
             angle_of_x = arctan2(y, x)
@@ -194,12 +190,11 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a2_from_a1 >= -scale_a2_from_a1_squared_times_rounding):
             return None
         # twice the scale, with the rounding of its parts
-        twice_scale_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
-        divisor_of_cos_a2_from_a1 = twice_scale_a2_from_a1 if twice_scale_a2_from_a1 > 0.0 else 1.0
-        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/divisor_of_cos_a2_from_a1
+        both_a2_from_a1 = one_less_cos_a2_from_a1 + one_plus_cos_a2_from_a1
+        sum_a2_from_a1 = both_a2_from_a1 if both_a2_from_a1 > 0.0 else 1.0
+        cos_a2_from_a1 = (one_plus_cos_a2_from_a1 - one_less_cos_a2_from_a1)/sum_a2_from_a1
         sin_a2_from_a1 = (
-            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow
-            /divisor_of_cos_a2_from_a1
+            2.0*(sqrt(sine_square_a2_from_a1) if sine_square_a2_from_a1 > 0.0 else 0.0)*sigma_elbow/sum_a2_from_a1
         )
         if reach > machine_scale_times_free_angle:
             angle_a1 = arctan2(y, x) - arctan2(link_length_2*sin_a2_from_a1, link_length_1 + link_length_2*cos_a2_from_a1)

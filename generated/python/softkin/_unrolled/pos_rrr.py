@@ -81,10 +81,10 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
@@ -161,10 +161,10 @@ def unrolled(k: Constants) -> Unrolled:
         # 1 + cosine, times the scale
         one_plus_cos_q3 = (effective_q3_2 - a2_minus_reach)*(a2_plus_reach - effective_q3_2)
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3 + 0.0, a2 + effective_q3_2*cos_swing_q3 + 0.0)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1 + 0.0, wrist_y_from_q1 + 0.0)
@@ -269,10 +269,10 @@ def unrolled(k: Constants) -> Unrolled:
             cos_q1_before_q1_for_q3_back = cos_q1_before_q1_for_q3_front
             sin_q1_before_q1_for_q3_back = sin_q1_before_q1_for_q3_front
         axis_a1_front = offset_a1 + arctan2(sin_q1_before_q1_for_q3_front, cos_q1_before_q1_for_q3_front)*RADIAN
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -294,10 +294,10 @@ def unrolled(k: Constants) -> Unrolled:
         sine_square_q3 = one_less_cos_q3*one_plus_cos_q3  # the square of sine times scale
         refusal_back = 0.0 if sine_square_q3 >= -swing_scale_q3_2_squared_times_rounding else 3.0  # q3: out of reach
         axis_a1_back = offset_a1 + arctan2(sin_q1_before_q1_for_q3_back, cos_q1_before_q1_for_q3_back)*RADIAN
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
-        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/divisor_of_cos_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = 2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)/sum_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_across_q2 = arctan2(effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)
             angle_of_wrist_y_from_q1 = arctan2(wrist_x_from_q1, wrist_y_from_q1)
@@ -381,10 +381,10 @@ def unrolled(k: Constants) -> Unrolled:
             free_a1 = (ref_a1 - offset_a1)*DEGREE
             cos_q1_before_q1_for_q3 = cos(free_a1)
             sin_q1_before_q1_for_q3 = sin(free_a1)
-        twice_scale_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_q3 = twice_scale_q3 if twice_scale_q3 > 0.0 else 1.0
-        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_q3
-        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/divisor_of_cos_q3
+        both_q3 = one_less_cos_q3 + one_plus_cos_q3  # twice the scale, with the rounding of its parts
+        sum_q3 = both_q3 if both_q3 > 0.0 else 1.0
+        sin_swing_q3 = -2.0*(sqrt(sine_square_q3) if sine_square_q3 > 0.0 else 0.0)*sigma_elbow/sum_q3
+        cos_swing_q3 = (one_plus_cos_q3 - one_less_cos_q3)/sum_q3
         if reach > machine_scale_times_free_angle:
             angle_q2 = (
                 arctan2(-effective_q3_2*sin_swing_q3, a2 + effective_q3_2*cos_swing_q3)

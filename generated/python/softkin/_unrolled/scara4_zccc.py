@@ -81,10 +81,10 @@ def unrolled(k: Constants) -> Unrolled:
         # limits of A1
         if not (axis_a1 >= lowest_a1 and axis_a1 <= highest_a1):
             return 2*(3.0,)
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3 + 0.0, link_length_1 + link_length_2*cos_a3 + 0.0)
             angle_of_wrist_x = arctan2(wrist_y + 0.0, wrist_x + 0.0)
@@ -167,10 +167,10 @@ def unrolled(k: Constants) -> Unrolled:
         if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
             return 2*(None,)
         axis_a1 = offset_a1 + z
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)/sum_a3
         if reach > machine_scale_times_free_angle:
             angle_of_arm_along_a2 = arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
             angle_of_wrist_x = arctan2(wrist_y, wrist_x)
@@ -215,10 +215,10 @@ def unrolled(k: Constants) -> Unrolled:
         # a3: out of reach
         if not (sine_square_a3 >= -scale_a3_squared_times_rounding):
             return None
-        twice_scale_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
-        divisor_of_cos_a3 = twice_scale_a3 if twice_scale_a3 > 0.0 else 1.0
-        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/divisor_of_cos_a3
-        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/divisor_of_cos_a3
+        both_a3 = one_less_cos_a3 + one_plus_cos_a3  # twice the scale, with the rounding of its parts
+        sum_a3 = both_a3 if both_a3 > 0.0 else 1.0
+        cos_a3 = (one_plus_cos_a3 - one_less_cos_a3)/sum_a3
+        sin_a3 = 2.0*(sqrt(sine_square_a3) if sine_square_a3 > 0.0 else 0.0)*sigma_elbow/sum_a3
         if reach > machine_scale_times_free_angle:
             angle_a2 = arctan2(wrist_y, wrist_x) - arctan2(link_length_2*sin_a3, link_length_1 + link_length_2*cos_a3)
         else:
