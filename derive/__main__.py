@@ -7,9 +7,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from derive.catalogue import MECHANISMS, Entry, catalogue
-from derive.folder import ForeignFolder, differences, replace_folder
-from derive.mechanism import DescriptionError
+from derive.description.catalogue import MECHANISMS, Entry, catalogue
+from derive.description.mechanism import DescriptionError
+from derive.output import ForeignFolder, differences, replace_folder
 from derive.pipeline import Built, GenerationError, derive_all, languages, render_all
 
 OUTPUT = MECHANISMS.parents[1] / "generated"

@@ -9,17 +9,17 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from derive.build import build
-from derive.catalogue import Entry
-from derive.emit import python
+from derive.description.catalogue import Entry
+from derive.description.mechanism import DescriptionError, Mechanism
 from derive.emit.language import Language
-from derive.emit.st import StructuredTextFiles
-from derive.emit.st_pictures import pictures_of
-from derive.kinematics import Evidence, Kinematics
-from derive.mechanism import DescriptionError, Mechanism
-from derive.selftest import self_test
-from derive.solve import Unsolved
-from derive.verify import BrokenProgram
+from derive.emit.python import package as python
+from derive.emit.softmotion.library import StructuredTextFiles
+from derive.emit.softmotion.pictures import pictures_of
+from derive.ir.verify import BrokenProgram
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Evidence, Kinematics
+from derive.report.self_test import self_test
+from derive.solver.solve import Unsolved
 from derive.witness import Disagreement, witness
 
 PROCESSES = 2

@@ -1,34 +1,19 @@
-"""Vectors of expressions, for the geometry of closed loops."""
+"""Vectors for closures that are not a chain: what a mechanism file imports."""
 
-from __future__ import annotations
+from derive.geometry.vectors import (
+    Vector,
+    cross,
+    dot,
+    minus,
+    triple,
+    vector,
+)
 
-from collections.abc import Sequence
-
-import sympy as sp
-
-Vector = tuple[sp.Expr, ...]
-
-
-def vector(*entries: object) -> Vector:
-    """A point or direction, in the plane or in space."""
-    return tuple(sp.sympify(e) for e in entries)
-
-
-def minus(end: Vector, start: Vector) -> Vector:
-    """From start to end."""
-    return tuple(e - s for e, s in zip(end, start, strict=True))
-
-
-def dot(first: Vector, second: Vector) -> sp.Expr:
-    """The scalar product; a direction in the plane ignores the z of a vector in space."""
-    return sp.Add(*[a * b for a, b in zip(first, second, strict=False)])
-
-
-def cross(first: Vector, second: Vector) -> sp.Expr:
-    """The z of the vector product: positive where second lies to the left of first."""
-    return first[0] * second[1] - first[1] * second[0]
-
-
-def triple(rows: Sequence[Vector]) -> sp.Expr:
-    """The determinant of three vectors in space, or of two in the plane."""
-    return sp.Matrix([list(row) for row in rows]).det()
+__all__ = [
+    "Vector",
+    "cross",
+    "dot",
+    "minus",
+    "triple",
+    "vector",
+]

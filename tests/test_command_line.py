@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from derive.__main__ import OUTPUT, main
-from derive.build import build
-from derive.catalogue import MECHANISMS, catalogue, load
-from derive.folder import differences
+from derive.description.catalogue import MECHANISMS, catalogue, load
+from derive.kinematics.build import build
+from derive.output import differences
 
 SCARA = MECHANISMS / "kin_scara4_zccoupled_type1.py"
 ROOT = MECHANISMS.parents[1]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from derive.__main__ import OUTPUT
-from derive.folder import differences
+from derive.output import differences
 
 
 @pytest.mark.slow

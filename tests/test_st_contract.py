@@ -9,7 +9,7 @@ from functools import lru_cache
 import pytest
 
 from derive.__main__ import OUTPUT
-from derive.emit.st_contract import load
+from derive.emit.st.contract import load
 from tests.st import ast
 from tests.st.contract import INTERFACES, plain
 from tests.st.library import Library, compile_st

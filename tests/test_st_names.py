@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from derive.__main__ import main
-from derive.catalogue import MECHANISMS
-from derive.emit.st_names import spellings
-from derive.emit.st_objects import Object, objects_of
-from derive.emit.st_reserved import clash, refuse_clashes, reserved
-from derive.mechanism import DescriptionError
+from derive.description.catalogue import MECHANISMS
+from derive.description.mechanism import DescriptionError
+from derive.emit.plcopen.objects import Object, objects_of
+from derive.emit.st.names import spellings
+from derive.emit.st.reserved import clash, refuse_clashes, reserved
 from tests.st.contract import INTERFACES
 from tests.st.names import C_MACROS, KEYWORDS
 

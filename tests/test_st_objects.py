@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from derive.emit.st_declaration import declaration_of
-from derive.emit.st_objects import Object, objects_of, ruled
-from derive.emit.st_uses import needed
+from derive.emit.plcopen.declaration import declaration_of
+from derive.emit.plcopen.objects import Object, objects_of, ruled
+from derive.emit.plcopen.uses import needed
 
 TEXT = """\
 {attribute 'flag'}

@@ -11,9 +11,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from derive import run
 from derive.__main__ import OUTPUT
-from derive.program import EDGE, FREE_ANGLE
+from derive.ir import interpret as run
+from derive.ir.constants import (
+    EDGE,
+    FREE_ANGLE,
+)
 from tests.st.library import Library, StError, compile_st
 
 TEXTS = {p.name: p.read_text(encoding="utf-8") for p in sorted((OUTPUT / "st" / "softkin").glob("*.st"))}

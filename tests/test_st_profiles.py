@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 from derive.__main__ import main
-from derive.build import build
-from derive.catalogue import MECHANISMS, load
-from derive.emit.st import StructuredTextFiles
-from derive.emit.st_contract import _FILE
-from derive.emit.st_contract import load as contract
-from derive.kinematics import Kinematics
+from derive.description.catalogue import MECHANISMS, load
+from derive.emit.softmotion.library import StructuredTextFiles
+from derive.emit.st.contract import _FILE
+from derive.emit.st.contract import load as contract
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
 from tests.execution.controller import OK, UNREACHABLE, Controller
 from tests.st import ast
 from tests.st.library import compile_st

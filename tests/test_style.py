@@ -9,14 +9,34 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
+IMPORT_LINTER = "from importlinter.cli import lint_imports_command as lint; lint(['--no-cache'])"
 TOOLS = {
-    "ruff": ("ruff", "check", "--no-cache", "."),
-    "mypy": ("mypy", "--strict", "derive"),
-    "mypy of the generated package": ("mypy", "--strict", "generated/python/softkin"),
+    "ruff": ("-m", "ruff", "check", "--no-cache", "."),
+    "mypy": ("-m", "mypy", "--strict", "derive"),
+    "mypy of the generated package": ("-m", "mypy", "--strict", "generated/python/softkin"),
+    "directions of imports": ("-c", IMPORT_LINTER),
 }
+ROOM = 16
+"""A folder with more modules than this, its `__init__` counted, holds more than one idea; the catalogue may grow."""
 
 
 @pytest.mark.parametrize("tool", TOOLS)
 def test_clean(tool: str) -> None:
-    done = subprocess.run([sys.executable, "-m", *TOOLS[tool]], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, *TOOLS[tool]], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def rooms() -> list[Path]:
+    """Every folder of the compiler that holds modules."""
+    return sorted({path.parent for path in (ROOT / "derive").rglob("*.py")} - {ROOT / "derive"})
+
+
+def test_the_map_names_every_folder() -> None:
+    map_ = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+    missing = [room.name for room in rooms() if f"`{room.name}/`" not in map_]
+    assert not missing, f"ARCHITECTURE.md has no row for {missing}"
+
+
+@pytest.mark.parametrize("room", [room.relative_to(ROOT) for room in rooms() if room.name != "mechanisms"], ids=str)
+def test_a_folder_holds_one_idea(room: Path) -> None:
+    assert len(list((ROOT / room).glob("*.py"))) <= ROOM

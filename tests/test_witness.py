@@ -9,10 +9,19 @@ from dataclasses import replace
 import pytest
 import sympy as sp
 
-from derive.build import build
-from derive.catalogue import MECHANISMS, Entry, catalogue, load
-from derive.kinematics import Kinematics
-from derive.program import Let, Output, Program, Require, Status, real
+from derive.description.catalogue import MECHANISMS, Entry, catalogue, load
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
 from derive.witness import Disagreement, decade, witness
 
 SCARA = "kin_scara4_zccoupled_type1"

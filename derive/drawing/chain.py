@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import sympy as sp
 
+from derive.description.mechanism import DescriptionError, Joint, Mechanism
 from derive.drawing.labels import Values, axis_name, interface, plain
 from derive.drawing.scene import Body, Dimension, Frame, Point, Scene, Segment, Slide, Turn, point
-from derive.frames import Factor, Motion
-from derive.mechanism import DescriptionError, Joint, Mechanism
-from derive.run import Array, evaluate
+from derive.geometry.frames import Factor, Motion
+from derive.ir.interpret import Array, evaluate
 
 _PARALLEL, _EXACT = 0.999, 1e-6
 

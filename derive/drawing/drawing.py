@@ -7,16 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from derive.description.mechanism import Joint, Mechanism
 from derive.drawing.chain import chain_scene
 from derive.drawing.labels import plain
 from derive.drawing.loop import loop_scene
 from derive.drawing.pose import Pose, drawn_pose, nominal_machine, pose_at, values_at
 from derive.drawing.scene import Scene, Segment, Spot
-from derive.kinematics import Kinematics
-from derive.mechanism import Joint, Mechanism
-from derive.program import Status
-from derive.selftest_calls import Tested, branches
-from derive.selftest_cases import Reals
+from derive.ir.program import Status
+from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.reference_cases import Reals
+from derive.report.reference_calls import Tested, branches
 
 _ANGLES = (25.0, 60.0, -40.0, 35.0, 50.0, 20.0)
 """Where rotary axes stand to show a configuration, one after the other."""

@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import numpy as np
 import sympy as sp
 
-from derive.mechanism import Joint, Mechanism, Parameter, Role
-from derive.program import DEGREE
-from derive.run import Array, evaluate
-from derive.sampling import sample_machine
+from derive.description.mechanism import Joint, Mechanism, Parameter, Role
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.interpret import Array, evaluate
+from derive.kinematics.sampling import sample_machine
 
 Values = Mapping[str, Array]
 LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH, Role.DISTANCE)

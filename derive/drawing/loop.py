@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import sympy as sp
 
+from derive.description.mechanism import ROTATION, DescriptionError, Joint, Mechanism, Rod, X, Y, Z
 from derive.drawing.labels import Naming, Values, axis_name, vector_at
 from derive.drawing.scene import Arc, Body, Dimension, Frame, Scene, Segment, Slide, Spot, Turn, point
-from derive.mechanism import ROTATION, DescriptionError, Joint, Mechanism, Rod, X, Y, Z
-from derive.run import Array, evaluate
+from derive.ir.interpret import Array, evaluate
 
 _EXACT = 1e-7
 _TCP = (X.symbol, Y.symbol, Z.symbol)

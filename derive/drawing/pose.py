@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from derive.description.mechanism import DescriptionError
 from derive.drawing.labels import Values
 from derive.drawing.scene import Frame, frame_of
-from derive.kinematics import Kinematics
-from derive.mechanism import DescriptionError
-from derive.program import Status
-from derive.run import evaluate
-from derive.selftest_calls import FRAME, Tested, forward, tested
-from derive.selftest_cases import Bytes, Reals
+from derive.ir.interpret import evaluate
+from derive.ir.program import Status
+from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.reference_cases import Bytes, Reals
+from derive.report.reference_calls import FRAME, Tested, forward, tested
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from enum import Enum
 import numpy as np
 import sympy as sp
 
-from derive.run import Array
+from derive.ir.interpret import Array
 
 Point = tuple[float, float, float]
 

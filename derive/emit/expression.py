@@ -12,7 +12,16 @@ from collections.abc import Sequence
 import sympy as sp
 from sympy.core.relational import Relational
 
-from derive.program import DEGREE, Atan2, NearestOnArc, NearestPeriod, Root, Select
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.primitives import (
+    Atan2,
+    NearestOnArc,
+    NearestPeriod,
+    Root,
+    Select,
+)
 
 _OR, _AND, COMPARE, _SUM, PRODUCT, _UNARY, ATOM = range(7)
 

@@ -2,7 +2,20 @@
 
 from sympy import cos, sin
 
-from derive.mechanism import Constraint, Mechanism, Task, Vendor, X, Y, assembly, branch, length, optional_length, rod, rotary
+from derive.mechanism import (
+    Constraint,
+    Mechanism,
+    Task,
+    Vendor,
+    X,
+    Y,
+    assembly,
+    branch,
+    length,
+    optional_length,
+    rod,
+    rotary,
+)
 from derive.vectors import cross, minus, vector
 
 L1 = length("inner_arm", "Length of the inner arms", nominal=250.0)

@@ -3,7 +3,18 @@
 from sympy import sin
 
 from derive.frames import Rz, Tx
-from derive.mechanism import Mechanism, Task, Turning, Vendor, branch, coupling, length, limited, optional_length, rotary
+from derive.mechanism import (
+    Mechanism,
+    Task,
+    Turning,
+    Vendor,
+    branch,
+    coupling,
+    length,
+    limited,
+    optional_length,
+    rotary,
+)
 
 L1 = length("link_length_1", "Length of link 1, joint 1 to joint 2", nominal=300.0)
 L2 = length("link_length_2", "Length of link 2, joint 2 to joint 3", nominal=250.0)

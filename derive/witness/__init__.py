@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from derive.kinematics import Evidence, Inverted, Kinematics
+from derive.kinematics.kinematics import Evidence, Inverted, Kinematics
 from derive.witness.checks import check_forward, check_jacobian, check_margins
 from derive.witness.closure import closure_of
 from derive.witness.disagreement import Disagreement

@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.kinematics import Kinematics
-from derive.program import Program, Status
-from derive.run import Array, run
+from derive.ir.interpret import Array, run
+from derive.ir.program import Program, Status
+from derive.kinematics.kinematics import Kinematics
 from derive.witness.closure import POSE, Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.samples import Samples, describe

@@ -14,10 +14,24 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.frames import Chain, Motion
-from derive.mechanism import COORDINATE_NAMES, ROTATION, Branch, Mechanism, Turning, X, Y, Z
-from derive.program import DEGREE, real
-from derive.run import Array
+from derive.description.mechanism import (
+    ROTATION,
+    Branch,
+    Mechanism,
+    Turning,
+    X,
+    Y,
+    Z,
+)
+from derive.geometry.frames import Chain, Motion
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.interpret import Array
+from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    real,
+)
 from derive.witness.terms import Term, term
 
 LEAST_MARGIN = 1e-6

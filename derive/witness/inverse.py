@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.kinematics import Kinematics
-from derive.program import Program, Status
-from derive.run import Array, run
+from derive.ir.interpret import Array, run
+from derive.ir.program import Program, Status
+from derive.kinematics.kinematics import Kinematics
 from derive.witness.checks import CLEAR, CLOSURE_TOLERANCE, least_move, worst
 from derive.witness.closure import Closure
 from derive.witness.disagreement import Disagreement

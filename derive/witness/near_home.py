@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.random import Generator
 
-from derive.mechanism import Mechanism
-from derive.run import Array, evaluate
+from derive.description.mechanism import Mechanism
+from derive.ir.interpret import Array, evaluate
 from derive.witness.closure import Closure
 
 _SHIFT = 0.02

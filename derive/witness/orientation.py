@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from derive.kinematics import Freedom, Kinematics
-from derive.program import Status
-from derive.run import Array, run
+from derive.ir.interpret import Array, run
+from derive.ir.program import Status
+from derive.kinematics.kinematics import Freedom, Kinematics
 from derive.witness.checks import CLOSURE_TOLERANCE, run_regular, worst
 from derive.witness.closure import POSE
 from derive.witness.disagreement import Disagreement

@@ -10,9 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from derive.kinematics import Kinematics
-from derive.program import Status
-from derive.run import Array, run
+from derive.ir.interpret import Array, run
+from derive.ir.program import Status
+from derive.kinematics.kinematics import Kinematics
 from derive.witness.closure import POSE, Closure
 from derive.witness.samples import SEED, Samples
 

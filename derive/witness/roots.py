@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.run import Array
+from derive.ir.interpret import Array
 from derive.witness.closure import Closure
 from derive.witness.samples import SEED, Samples
 

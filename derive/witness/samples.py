@@ -11,11 +11,13 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from derive.kinematics import Kinematics
-from derive.mechanism import Joint, Mechanism, Parameter, Role, Turning
-from derive.parameters import MIN_TYPE2_MARGIN
-from derive.program import Status
-from derive.run import Array, run
+from derive.description.mechanism import Joint, Mechanism, Parameter, Role, Turning
+from derive.ir.interpret import Array, run
+from derive.ir.program import Status
+from derive.ir.symbols import (
+    MIN_TYPE2_MARGIN,
+)
+from derive.kinematics.kinematics import Kinematics
 from derive.witness.closure import LEAST_MARGIN, POSE, Closure
 from derive.witness.disagreement import Disagreement
 from derive.witness.near_home import axes_near_home

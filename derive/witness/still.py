@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from derive.kinematics import Kinematics
-from derive.program import Status
-from derive.run import run
+from derive.ir.interpret import run
+from derive.ir.program import Status
+from derive.kinematics.kinematics import Kinematics
 from derive.witness.checks import CLOSURE_TOLERANCE
 from derive.witness.closure import POSE, Closure
 from derive.witness.disagreement import Disagreement

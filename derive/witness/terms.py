@@ -11,8 +11,13 @@ from typing import Any
 import casadi as ca
 import sympy as sp
 
-from derive.mechanism import DescriptionError
-from derive.program import DEGREE, Select
+from derive.description.mechanism import DescriptionError
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.primitives import (
+    Select,
+)
 
 Term = Any
 """A CasADi expression (`casadi.SX`) or a number; CasADi carries no types."""

@@ -10,7 +10,7 @@ import pytest
 from softkin import Scara2Z
 
 from derive.__main__ import OUTPUT
-from derive.emit.st_contract import load
+from derive.emit.st.contract import load
 from tests.codesys.parts import FILES, all_parts
 from tests.st import ast
 from tests.st.library import compile_st

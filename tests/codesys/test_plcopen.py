@@ -13,8 +13,8 @@ from xsdata.formats.dataclass.parsers import XmlParser
 from xsdata.formats.dataclass.parsers.config import ParserConfig
 
 from derive.__main__ import OUTPUT
-from derive.emit.plcopen import document
-from derive.emit.st_objects import Object, objects_of
+from derive.emit.plcopen.document import document
+from derive.emit.plcopen.objects import Object, objects_of
 from tests.codesys.parts import FILES, Part, all_parts, parts_of
 from tests.codesys.plcopen_reader import Element, folders, identifiers, listed, parse, wholes
 from tests.codesys.typed_copy import declared_variables, typed_variables

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import softkin
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.coupling.parts import ORIENTATIONS, Part, orientation_parts, part
 from tests.execution import values
 from tests.execution.controller import OK, Answer, Controller

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from derive.mechanism import Turning
+from derive.description.mechanism import Turning
 from tests.coupling.parts import Part, frames
 
 _MET = {Turning.NONE: (), Turning.ABOUT_Z: (), Turning.DIRECTION: (2,), Turning.FULL: (0, 1, 2)}

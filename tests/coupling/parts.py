@@ -10,8 +10,8 @@ import softkin
 from numpy.random import Generator
 from softkin import Status
 
-from derive.catalogue import catalogue
-from derive.mechanism import Mechanism, Role, Turning
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism, Role, Turning
 from tests.mechanisms.closure import Array, Closure
 
 EVERYTHING = {m.name: m for _, m in catalogue()}

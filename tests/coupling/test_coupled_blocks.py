@@ -13,7 +13,7 @@ import pytest
 import softkin
 from softkin import KinematicsError
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.coupling.blocks import Carried, Image
 from tests.coupling.parts import EVERYTHING, ORIENTATIONS, Part, orientation_parts, position_part
 from tests.execution.closeness import asked

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.coupling import test_structured_text as tried
 from tests.coupling.blocks import ORIENTATIONS, Carried, twins_of
 from tests.execution import test_axis_settings, test_configuration_blocks, test_initialise, values

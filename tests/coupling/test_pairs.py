@@ -7,7 +7,7 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.mechanism import Mechanism, Turning
+from derive.description.mechanism import Mechanism, Turning
 from tests.coupling.determined import is_determined
 from tests.coupling.parts import ORIENTATIONS, POSITIONS, Part, frames, orientation_parts, position_part
 from tests.execution.samples import tilted

@@ -7,7 +7,7 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.mechanism import Mechanism, Turning
+from derive.description.mechanism import Mechanism, Turning
 from tests.coupling.blocks import ORIENTATIONS, Image, twins_of
 from tests.coupling.parts import EVERYTHING, orientation_parts, position_part
 from tests.coupling.test_coupled_blocks import Coupling

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from derive.mechanism import Mechanism, Turning
+from derive.description.mechanism import Mechanism, Turning
 from tests.coupling.blocks import IDENTITY, ORIENTATIONS, Image, Twins, twins_of
 from tests.coupling.determined import is_determined
 from tests.coupling.parts import EVERYTHING, position_part

@@ -10,12 +10,20 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from derive.algebra import cosine, polynomial, sine
-from derive.passes import assemble
-from derive.problem import Binding, Equation, Problem
-from derive.program import Let, Output, Statement, Status, real
-from derive.run import evaluate, run
-from derive.solve import Rule
+from derive.algebra.normal_form import cosine, polynomial, sine
+from derive.equations.problem import Binding, Equation, Problem
+from derive.ir.interpret import evaluate, run
+from derive.ir.passes import assemble
+from derive.ir.program import (
+    Let,
+    Output,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.solve import Rule
 
 Array = NDArray[np.float64]
 

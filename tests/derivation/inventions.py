@@ -10,8 +10,7 @@ import sympy as sp
 from numpy.typing import NDArray
 from sympy import cos, sin
 
-from derive.frames import Chain, Rz, Tx, Txyz, Ty, Tz, flip_x
-from derive.mechanism import (
+from derive.description.mechanism import (
     TURN,
     Mechanism,
     Parameter,
@@ -31,6 +30,7 @@ from derive.mechanism import (
     rotary,
     sign,
 )
+from derive.geometry.frames import Chain, Rz, Tx, Txyz, Ty, Tz, flip_x
 
 Array = NDArray[np.float64]
 Hand = Callable[[Mapping[str, Array], Mapping[str, Array]], tuple[Array, Array, Array]]

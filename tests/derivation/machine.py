@@ -10,11 +10,11 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.build import build
-from derive.kinematics import Kinematics
-from derive.mechanism import Mechanism
-from derive.program import Program, Status
-from derive.run import run
+from derive.description.mechanism import Mechanism
+from derive.ir.interpret import run
+from derive.ir.program import Program, Status
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
 
 Array = NDArray[np.float64]
 Values = dict[str, Array]

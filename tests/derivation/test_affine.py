@@ -7,8 +7,14 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.program import Let, Status, real
-from derive.subproblems.affine import affine
+from derive.ir.program import (
+    Let,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.subproblems.affine import affine
 from tests.derivation.execution import ANYTHING, LENGTHS, NUMBERS, all_finite, answer, answers, at, execute, problem
 
 V, W, U = (real(n) for n in "vwu")

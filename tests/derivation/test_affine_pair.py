@@ -6,8 +6,13 @@ import pytest
 import sympy as sp
 from hypothesis import given
 
-from derive.program import Status, real
-from derive.subproblems.affine_pair import affine_pair
+from derive.ir.program import (
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.subproblems.affine_pair import affine_pair
 from tests.derivation.execution import ANGLES, LENGTHS, NUMBERS, answer, answers, at, execute, few, problem, trigonometry
 
 V, W, U, TURN = (real(n) for n in ("v", "w", "u", "turn"))

@@ -4,9 +4,20 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.aimed import aimed
-from derive.passes import assemble
-from derive.program import Let, Output, Program, Root, Select, real
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.optimize.known_projection import aimed
 from tests.derivation.test_twins import same, values
 
 B, C, D, E, H, L, S, T, X, Y = (real(n) for n in ("b", "cos_q1", "d", "e", "h", "l", "sin_q1", "t", "x", "y"))

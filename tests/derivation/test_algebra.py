@@ -8,8 +8,21 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.algebra import cosine, is_compound, linear_coefficients, polynomial, reduce_units, sine, split_known
-from derive.program import DEGREE, real
+from derive.algebra.normal_form import (
+    cosine,
+    is_compound,
+    linear_coefficients,
+    polynomial,
+    reduce_units,
+    sine,
+    split_known,
+)
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.symbols import (
+    real,
+)
 from tests.derivation.execution import ANGLES, NUMBERS, at, few
 
 A1, A2, A3 = ANGLE_NAMES = tuple(real(f"a{k}") for k in (1, 2, 3))

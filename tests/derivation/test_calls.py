@@ -8,10 +8,26 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.passes import assemble, hoist
-from derive.program import Call, Let, Output, Program, Require, Root, Status, binds, reads, real, shared
-from derive.run import run
-from derive.verify import BrokenProgram, verify
+from derive.ir.interpret import run
+from derive.ir.passes import assemble, hoist
+from derive.ir.primitives import (
+    Root,
+)
+from derive.ir.program import (
+    Call,
+    Let,
+    Output,
+    Program,
+    Require,
+    Status,
+    binds,
+    reads,
+    shared,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.ir.verify import BrokenProgram, verify
 
 A, B, C, K, Q, W, X, Y = map(real, ("a", "b", "c", "k", "q", "w", "x", "y"))
 

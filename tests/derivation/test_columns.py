@@ -6,12 +6,27 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.columns import shorter_columns
-from derive.emit.arms import Arms, in_arms
-from derive.mechanism import ROTATION_ENTRIES
-from derive.passes import assemble
-from derive.program import FREE_ANGLE, KNOWN_ANGLE, Let, Output, Program, Root, Select, real
-from derive.run import run
+from derive.ir.constants import (
+    FREE_ANGLE,
+    KNOWN_ANGLE,
+)
+from derive.ir.interpret import run
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+)
+from derive.ir.symbols import (
+    ROTATION_ENTRIES,
+    real,
+)
+from derive.optimize.control_flow import Arms, in_arms
+from derive.optimize.rotation_identities import shorter_columns
 
 R = sp.Matrix(3, 3, ROTATION_ENTRIES)
 T, U, MADE_X, MADE_Y = (real(n) for n in ("t", "u", "made_x", "made_y"))

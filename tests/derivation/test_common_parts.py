@@ -4,12 +4,24 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.common_parts import common_parts
-from derive.emit.arms import Arms, in_arms, spared
-from derive.emit.reused_names import reused_names
-from derive.passes import assemble
-from derive.program import Let, Output, Program, Root, Select, Statement, real
-from derive.unroll import Sign, unroll, without_words
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Statement,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.optimize.coalesce import reused_names
+from derive.optimize.common_parts import common_parts
+from derive.optimize.control_flow import Arms, in_arms, spared
+from derive.optimize.unroll import Sign, unroll, without_words
 from tests.derivation.test_twins import same, values
 
 ARM, ELBOW = Sign(real("sigma_arm"), ("front", "back")), Sign(real("sigma_elbow"), ("down", "up"))

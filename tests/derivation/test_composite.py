@@ -7,9 +7,11 @@ from itertools import combinations, product
 import pytest
 import sympy as sp
 
-from derive.algebra import polynomial
-from derive.composite import Terms, composite, name_of, recognise, terms_of
-from derive.program import real
+from derive.algebra.angle_sums import Terms, composite, name_of, recognise, terms_of
+from derive.algebra.normal_form import polynomial
+from derive.ir.symbols import (
+    real,
+)
 
 A1, A2, A3, THETA = ANGLES = tuple(real(n) for n in ("a1", "a2", "a3", "theta"))
 L = sp.Symbol("link", positive=True)

@@ -8,13 +8,21 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.build import build
-from derive.mechanism import DescriptionError, Mechanism
+from derive.description.mechanism import DescriptionError, Mechanism
+from derive.description.validate import validate
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.interpret import run
+from derive.ir.program import (
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.kinematics.build import build
 from derive.mechanisms.kin_hexapod import BASE_CONE, MECHANISM, PLATFORM_CONE
 from derive.mechanisms.kin_tripod_p3z import MECHANISM as TRIPOD
-from derive.program import DEGREE, Status, real
-from derive.run import run
-from derive.validate import validate
 
 
 def with_cones(mechanism: Mechanism, base: list[sp.Expr | None], plate: list[sp.Expr | None]) -> Mechanism:

@@ -10,9 +10,11 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.consequences import differences, squares
-from derive.problem import Equation, Problem
-from derive.program import real
+from derive.equations.problem import Equation, Problem
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.eliminations import differences, squares
 from tests.derivation.execution import ANGLES, NUMBERS, at, execute, few, problem, trigonometry
 
 A1, A2, W = ANGLE_NAMES = tuple(real(n) for n in ("a1", "a2", "w"))

@@ -9,9 +9,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from derive.mechanism import Kind
-from derive.program import Let, Output, Program, Status
-from derive.validate import validate
+from derive.description.mechanism import Kind
+from derive.description.validate import validate
+from derive.ir.program import Let, Output, Program, Status
 from derive.witness import witness
 from tests.derivation.inventions import INVENTIONS
 from tests.derivation.machine import ENTRIES, Machine, Values, machine

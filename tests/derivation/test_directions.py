@@ -5,13 +5,31 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 
-from derive.angles_first import angles_first
-from derive.directions import plain_directions
-from derive.opposites import without_minus
-from derive.passes import assemble
-from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Require, Root, Select, Status, real
-from derive.shorter import shorter
-from derive.turnless import turnless
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Atan2,
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.optimize.angle_addition import angles_first
+from derive.optimize.directions import plain_directions
+from derive.optimize.negation import without_minus
+from derive.optimize.simplify import shorter
+from derive.optimize.without_periods import turnless
 from tests.derivation.test_twins import same, values
 
 C1, S1, C2, S2, C3, S3, C12, S12, C123, S123 = (

@@ -6,12 +6,18 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.algebra import cosine, sine
-from derive.passes import assemble
-from derive.problem import Equation, Problem
-from derive.program import Output, Status, real
-from derive.run import run
-from derive.subproblems.trigonometric import trigonometric
+from derive.algebra.normal_form import cosine, sine
+from derive.equations.problem import Equation, Problem
+from derive.ir.interpret import run
+from derive.ir.passes import assemble
+from derive.ir.program import (
+    Output,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.subproblems.trigonometric import trigonometric
 
 Q, X, Y, BESIDE = real("q"), real("x"), real("y"), real("beside")
 SCALE = sp.Symbol("reach", positive=True)

@@ -9,10 +9,16 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from derive.catalogue import MECHANISMS, load
-from derive.parameters import limits_of_axis
-from derive.program import LARGEST, LIMIT, Status
-from derive.run import run
+from derive.description.catalogue import MECHANISMS, load
+from derive.ir.constants import (
+    LARGEST,
+    LIMIT,
+)
+from derive.ir.interpret import run
+from derive.ir.program import (
+    Status,
+)
+from derive.kinematics.parameters import limits_of_axis
 from tests.derivation.machine import machine
 
 PROGRAM = limits_of_axis()

@@ -10,10 +10,21 @@ import sympy as sp
 from numpy.testing import assert_allclose
 from softkin import _array, _scalar
 
-from derive.passes import assemble, hoist
-from derive.program import Iterate, Let, Output, Program, Require, Solve, Status, real
-from derive.run import run, solve
-from derive.verify import BrokenProgram, verify
+from derive.ir.interpret import run, solve
+from derive.ir.passes import assemble, hoist
+from derive.ir.program import (
+    Iterate,
+    Let,
+    Output,
+    Program,
+    Require,
+    Solve,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.ir.verify import BrokenProgram, verify
 from tests.execution.units import compiled_shared
 
 A, B, X, Y, STEP = map(real, ("a", "b", "x", "y", "step"))

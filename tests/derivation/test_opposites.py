@@ -4,9 +4,25 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.opposites import with_fewer_signs
-from derive.passes import assemble
-from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Root, Select, real
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Atan2,
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.optimize.negation import with_fewer_signs
 from tests.derivation.test_twins import same, values
 
 A, B, C, L, N, R, S, U, V, X, Y = (real(n) for n in ("a", "b", "c", "l", "n", "r", "s", "u", "v", "x", "y"))

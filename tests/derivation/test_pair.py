@@ -10,8 +10,13 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.program import Status, real
-from derive.subproblems.pair import pair
+from derive.ir.program import (
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.subproblems.pair import pair
 from tests.derivation.execution import (
     ANGLES,
     ANYTHING,

@@ -8,11 +8,13 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.algebra import cosine, polynomial
-from derive.composite import composite
-from derive.parallel import Sum, candidate_sums, resolve, substitute
-from derive.problem import Problem
-from derive.program import real
+from derive.algebra.angle_sums import composite
+from derive.algebra.normal_form import cosine, polynomial
+from derive.equations.problem import Problem
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
 from tests.derivation.execution import ANGLES, angle_of, at, distance, execute, few, problem, reference, trigonometry
 
 A1, A2, A3 = ANGLE_NAMES = tuple(real(n) for n in ("a1", "a2", "a3"))

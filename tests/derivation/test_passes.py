@@ -6,10 +6,26 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.passes import assemble, hoist
-from derive.program import DEGREE, Let, Output, Program, Require, Root, Select, Status, real
-from derive.run import run
-from derive.verify import BrokenProgram
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.interpret import run
+from derive.ir.passes import assemble, hoist
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.ir.verify import BrokenProgram
 
 A, B, C, D, X, Y = (real(n) for n in "abcdxy")
 FAR = Require(sp.Gt(X, Y), Status.UNREACHABLE)

@@ -8,11 +8,11 @@ from dataclasses import replace
 import pytest
 from sympy import cos, sin
 
-from derive.build import build
-from derive.frames import Rx, Rz, Tx, Ty, Tz, flip_x
-from derive.mechanism import DescriptionError, Mechanism, Task, Turning, X, Y, branch, length, rotary
-from derive.solve import Unsolved
-from derive.validate import validate
+from derive.description.mechanism import DescriptionError, Mechanism, Task, Turning, X, Y, branch, length, rotary
+from derive.description.validate import validate
+from derive.geometry.frames import Rx, Rz, Tx, Ty, Tz, flip_x
+from derive.kinematics.build import build
+from derive.solver.solve import Unsolved
 from tests.derivation.inventions import A1, A2, A3, A4, ELBOW, L1, L2, L3, P1, P2, P3, invention, links
 
 FOLLOWED = Turning.ABOUT_Z

@@ -10,8 +10,25 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.program import DEGREE, Atan2, Let, Output, Program, Require, Root, Select, Status, real
-from derive.run import evaluate, nearest_on_arc, nearest_period, run
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.interpret import evaluate, nearest_on_arc, nearest_period, run
+from derive.ir.primitives import (
+    Atan2,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
 from tests.derivation.execution import at, distance
 
 X, Y, Z = (real(n) for n in "xyz")

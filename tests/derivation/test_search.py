@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from softkin._root import every_root
 from softkin._roots import CELLS
 
-from derive.roots import At, find_roots
+from derive.ir.roots import At, find_roots
 
 Array = NDArray[np.float64]
 Trial = Callable[[Array, Array, Array, Array], tuple[Array, ...]]

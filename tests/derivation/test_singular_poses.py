@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from derive.program import Status
+from derive.ir.program import Status
 from tests.derivation.execution import distance
 from tests.derivation.inventions import INVENTIONS
 from tests.derivation.machine import Machine, Values, machine

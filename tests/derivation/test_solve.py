@@ -15,14 +15,24 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.algebra import cosine, sine
-from derive.ledger import Ledger
-from derive.passes import assemble
-from derive.problem import Problem
-from derive.program import Atan2, Let, Output, Status, real
-from derive.run import run
-from derive.solve import Derivation, Unsolved, solve
-from derive.verify import BrokenProgram
+from derive.algebra.normal_form import cosine, sine
+from derive.equations.problem import Problem
+from derive.ir.interpret import run
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Atan2,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.ir.verify import BrokenProgram
+from derive.solver.derivation_record import Ledger
+from derive.solver.solve import Derivation, Unsolved, solve
 from tests.derivation.execution import at, distance, problem, reference
 
 A1, A2, A3, HEADING = (real(n) for n in ("a1", "a2", "a3", "heading"))

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import pytest
 from sympy import cos, pi, sin
 
-from derive.build import build
-from derive.frames import Rx, Ry, Rz, Tx, Txyz, Ty, Tz, denavit_hartenberg
-from derive.mechanism import Mechanism, Task, Turning, Vendor, branch, distance, length, linear, rotary
+from derive.description.mechanism import Mechanism, Task, Turning, Vendor, branch, distance, length, linear, rotary
+from derive.geometry.frames import Rx, Ry, Rz, Tx, Txyz, Ty, Tz, denavit_hartenberg
+from derive.kinematics.build import build
 from derive.witness import witness
 
 L1 = length("link_1", "first link", nominal=300.0)

@@ -10,9 +10,14 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from derive.problem import Binding, Problem
-from derive.program import Status, real
-from derive.subproblems.trigonometric import trigonometric
+from derive.equations.problem import Binding, Problem
+from derive.ir.program import (
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.subproblems.trigonometric import trigonometric
 from tests.derivation.execution import (
     ANGLES,
     ANYTHING,

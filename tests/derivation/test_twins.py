@@ -5,11 +5,28 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
-from derive.constant_parts import constant_parts
-from derive.passes import assemble
-from derive.program import DEGREE, FREE_ANGLE, Atan2, Let, NearestPeriod, Output, Program, Root, Select, real
-from derive.run import run
-from derive.twins import with_twins
+from derive.ir.constants import (
+    DEGREE,
+    FREE_ANGLE,
+)
+from derive.ir.interpret import run
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Atan2,
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.optimize.constant_parts import constant_parts
+from derive.optimize.symmetry import with_twins
 
 A, B, C, D, N, R, T, X, Y = (real(n) for n in "abcdnrtxy")
 C_DOWN, C_UP, S_DOWN, S_UP, M_DOWN, M_UP = (real(n) for n in ("c_down", "c_up", "s_down", "s_up", "m_down", "m_up"))

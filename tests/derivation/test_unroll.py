@@ -8,25 +8,39 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.build import build
-from derive.catalogue import MECHANISMS, load
-from derive.kinematics import Kinematics
-from derive.program import (
+from derive.description.catalogue import MECHANISMS, load
+from derive.ir.interpret import run
+from derive.ir.primitives import (
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
     Iterate,
     Let,
-    NearestPeriod,
     Output,
     Program,
     Require,
-    Root,
-    Select,
     Solve,
     Status,
+)
+from derive.ir.symbols import (
     real,
 )
-from derive.run import run
-from derive.unroll import REFUSAL, Sign, any_turn, choices, is_straight, specialised, suffixed, unroll, with_limits
-from derive.verify import BrokenProgram, verify
+from derive.ir.verify import BrokenProgram, verify
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
+from derive.optimize.unroll import (
+    REFUSAL,
+    Sign,
+    any_turn,
+    choices,
+    is_straight,
+    specialised,
+    suffixed,
+    unroll,
+    with_limits,
+)
 
 A, B, C, X, Y = (real(n) for n in "abcxy")
 ELBOW, WRIST = Sign(real("sigma_elbow"), ("right", "left")), Sign(real("sigma_wrist"), ("down", "up"))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from softkin import _array, _scalar
 
-from derive.run import solve
+from derive.ir.interpret import solve
 from tests.derivation.test_loops import controller
 
 Array = NDArray[np.float64]

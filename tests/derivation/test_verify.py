@@ -7,22 +7,28 @@ import re
 import pytest
 import sympy as sp
 
-from derive.program import (
+from derive.ir.constants import (
     DEGREE,
+)
+from derive.ir.primitives import (
     Atan2,
-    Let,
     NearestOnArc,
     NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
     Output,
     Program,
     Require,
-    Root,
-    Select,
     Statement,
     Status,
+)
+from derive.ir.symbols import (
     real,
 )
-from derive.verify import BrokenProgram, verify
+from derive.ir.verify import BrokenProgram, verify
 
 X, Y, Z = (real(n) for n in "xyz")
 

@@ -7,10 +7,10 @@ from functools import cache
 
 import numpy as np
 
-from derive.build import build
-from derive.catalogue import catalogue
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism
 from derive.drawing.drawing import Drawing, drawing_of
-from derive.mechanism import Mechanism
+from derive.kinematics.build import build
 from derive.witness.closure import Closure, closure_of
 
 CATALOGUE = {mechanism.name: mechanism for _, mechanism in catalogue()}

@@ -10,10 +10,10 @@ import pytest
 from PIL import Image
 
 from derive.__main__ import OUTPUT
+from derive.description.mechanism import Mechanism
 from derive.emit.picture.canvas import WIDTH, pictures, text_width
 from derive.emit.picture.page import page
 from derive.emit.picture.spelling import spelled
-from derive.mechanism import Mechanism
 from tests.drawings.machines import CATALOGUE, drawn
 
 ST = OUTPUT / "st"

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from derive.build import build
+from derive.description.mechanism import DescriptionError, Mechanism, X, Y, rod
+from derive.description.validate import validate
 from derive.drawing.drawing import drawing_of
-from derive.mechanism import DescriptionError, Mechanism, X, Y, rod
-from derive.validate import validate
+from derive.kinematics.build import build
 from tests.drawings.machines import CATALOGUE
 
 SCISSOR = CATALOGUE["Kin_P2X_Type2"]

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from derive.description.mechanism import Mechanism
 from derive.drawing.labels import axis_name
 from derive.drawing.scene import Body, Scene
 from derive.emit.picture.ink import Line
 from derive.emit.picture.rails import rails, slide_arrow
 from derive.emit.picture.view import Box, fitted
-from derive.mechanism import Mechanism
 from tests.drawings.machines import CATALOGUE, CHAINS, KINDS, RODS, Drawn, drawn
 
 STEP = 1e-4

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.execution.twins import MECHANISMS
 from tests.execution.units import file_of, shared_texts, text_of
 

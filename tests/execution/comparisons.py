@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from derive.mechanism import Joint, Kind, Turning
-from derive.splits import is_spatial
+from derive.description.mechanism import Joint, Kind, Turning
+from derive.equations.chain_splits import is_spatial
 from tests.execution.closeness import asked, assert_same, is_close
 from tests.execution.controller import NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller
 from tests.execution.reasons import compare_reason

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from derive.emit.st_names import input_name
-from derive.mechanism import Mechanism, Parameter, Role
-from derive.parameters import machine_parameters
+from derive.description.mechanism import Mechanism, Parameter, Role
+from derive.emit.st.names import input_name
+from derive.kinematics.parameters import machine_parameters
 from tests.execution import values
 from tests.execution.settings import Range, settings
 from tests.execution.values import Numbers

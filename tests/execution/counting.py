@@ -9,8 +9,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from derive.cost import Cost
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
+from derive.report.cost import Cost
 from tests.execution.units import file_of, shared_texts, text_of
 from tests.st.library import Library, compile_st
 

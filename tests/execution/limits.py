@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.random import Generator
 
-from derive.mechanism import Joint, Mechanism
+from derive.description.mechanism import Joint, Mechanism
 from tests.mechanisms.machines import Array, Machine, machine, machines_of
 
 WIDE = (0.1, 0.9)

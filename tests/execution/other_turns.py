@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from derive.mechanism import Joint
+from derive.description.mechanism import Joint
 from tests.execution.controller import OK, Controller
 from tests.execution.samples import Sample
 from tests.turns.ranges import number_of

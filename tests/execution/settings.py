@@ -10,8 +10,8 @@ import numpy as np
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.catalogue import catalogue
-from derive.mechanism import Joint, Mechanism, Role
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Joint, Mechanism, Role
 from tests.execution import values
 from tests.st.library import Library
 

@@ -15,7 +15,7 @@ from itertools import product
 import pytest
 import softkin
 
-from derive.mechanism import Joint, Mechanism
+from derive.description.mechanism import Joint, Mechanism
 from tests.execution.closeness import asked, assert_same
 from tests.execution.controller import BAD_INPUT, NOT_INITIALIZED, OK, UNREACHABLE, Answer, Controller
 from tests.execution.settings import TURNING, Range, poses, robot_of, together

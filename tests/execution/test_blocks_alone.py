@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from derive.mechanism import Turning
+from derive.description.mechanism import Turning
 from tests.execution.controller import OK, UNREACHABLE
 from tests.execution.limits import EXACTLY_A_TURN, has_limits, is_inside
 from tests.execution.twins import Twins

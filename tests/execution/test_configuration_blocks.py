@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.execution import values
 from tests.execution.closeness import asked, assert_same
 from tests.execution.comparisons import padded

@@ -11,27 +11,34 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derive.catalogue import catalogue
-from derive.cost import Cost, cost_of, expression_cost, solve_cost
-from derive.mechanism import Mechanism
-from derive.parameters import SCALE, machine_parameters
-from derive.program import (
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism
+from derive.ir.primitives import (
     Atan2,
+    NearestOnArc,
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
     Call,
     Iterate,
     Let,
-    NearestOnArc,
-    NearestPeriod,
     Output,
     Program,
     Require,
-    Root,
-    Select,
     Solve,
     Status,
+)
+from derive.ir.symbols import (
+    SCALE,
     real,
 )
-from derive.sampling import sample_axes
+from derive.kinematics.parameters import (
+    machine_parameters,
+)
+from derive.kinematics.sampling import sample_axes
+from derive.report.cost import Cost, cost_of, expression_cost, solve_cost
 from tests.execution.controller import OK, Controller
 from tests.execution.counting import counted, counting_units
 from tests.execution.samples import NO_TURN

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from softkin import Diagnosis, Scara2Z, Status
 
-from derive.catalogue import MECHANISMS, load
+from derive.description.catalogue import MECHANISMS, load
 from tests.execution.controller import Controller
 from tests.execution.samples import NO_TURN
 from tests.execution.units import compiled

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.execution.comparisons import COMPARISONS, POSELESS
 from tests.execution.twins import MECHANISMS, twins_of
 from tests.execution.units import compiled

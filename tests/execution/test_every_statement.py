@@ -7,8 +7,8 @@ from itertools import product
 import numpy as np
 import softkin
 
-from derive.emit.st_names import capitalized
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
+from derive.emit.st.names import capitalized
 from tests.execution import (
     test_axis_settings,
     test_blocks_alone,

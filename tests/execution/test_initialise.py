@@ -10,8 +10,8 @@ from functools import partial
 import pytest
 import softkin
 
-from derive.mechanism import Mechanism, Parameter, Role
-from derive.parameters import machine_parameters
+from derive.description.mechanism import Mechanism, Parameter, Role
+from derive.kinematics.parameters import machine_parameters
 from tests.execution.any_method import call_of, methods_of
 from tests.execution.closeness import asked
 from tests.execution.controller import NOT_INITIALIZED, OK, Controller

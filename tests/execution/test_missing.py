@@ -10,9 +10,11 @@ import softkin
 import sympy as sp
 from softkin import Diagnosis, KinematicsError, Status
 
-from derive.catalogue import catalogue
-from derive.mechanism import Mechanism, Rod, X, Y, Z
-from derive.program import DEGREE
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism, Rod, X, Y, Z
+from derive.ir.constants import (
+    DEGREE,
+)
 from tests.execution.samples import NO_TURN
 
 LEGS = tuple(

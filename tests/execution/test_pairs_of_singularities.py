@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.execution.controller import OK
 from tests.execution.twins import twins_from
 from tests.mechanisms.cornered import KR6_D3, PAIRED, places, poses

@@ -13,8 +13,19 @@ from softkin import _root
 from softkin._configuration import turn_inside
 from softkin._rotation import made_rotation
 
-from derive.program import Atan2, NearestOnArc, NearestPeriod, Root, Status, real
-from derive.run import evaluate
+from derive.ir.interpret import evaluate
+from derive.ir.primitives import (
+    Atan2,
+    NearestOnArc,
+    NearestPeriod,
+    Root,
+)
+from derive.ir.program import (
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
 from tests import orthonormal
 from tests.execution.units import compiled_shared
 from tests.st.library import StFault

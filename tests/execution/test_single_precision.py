@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from derive.mechanism import Turning
+from derive.description.mechanism import Turning
 from tests.execution.closeness import asked, assert_same
 from tests.execution.controller import BAD_INPUT, OK
 from tests.execution.reasons import compare_reason

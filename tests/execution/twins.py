@@ -7,7 +7,7 @@ from functools import cache, cached_property
 
 import softkin
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.execution.controller import OK, Controller
 from tests.execution.limits import limited_machines
 from tests.execution.samples import Sample, grid, regular

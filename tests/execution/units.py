@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.st.library import Library, compile_st
 
 FOLDER = Path(__file__).resolve().parents[2] / "generated" / "st"

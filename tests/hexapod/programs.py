@@ -9,11 +9,11 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.build import build
-from derive.kinematics import Kinematics
+from derive.ir.interpret import run
+from derive.ir.program import Call, Iterate, Program, Require, Statement
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
 from derive.mechanisms.kin_hexapod import MECHANISM
-from derive.program import Call, Iterate, Program, Require, Statement
-from derive.run import run
 from tests.hexapod.machines import Array, Machine
 
 Statuses = NDArray[np.object_]

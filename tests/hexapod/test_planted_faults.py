@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from softkin import Hexapod
 
+from derive.ir.program import Call, Program
+from derive.ir.program import Status as Outcome
 from derive.mechanisms.kin_hexapod import MECHANISM
-from derive.program import Call, Program
-from derive.program import Status as Outcome
 from tests.execution.units import compiled_text, file_of, text_of
 from tests.hexapod.blocks import made
 from tests.hexapod.machines import Machine, machines

@@ -9,9 +9,15 @@ import pytest
 from numpy.testing import assert_allclose
 from softkin import KinematicsError, Status
 
-from derive.newton import LIMIT
-from derive.program import Iterate, Statement, real
-from derive.program import Status as Outcome
+from derive.ir.program import (
+    Iterate,
+    Statement,
+)
+from derive.ir.program import Status as Outcome
+from derive.ir.symbols import (
+    real,
+)
+from derive.plate.newton import LIMIT
 from tests.execution.controller import IMPOSSIBLE
 from tests.hexapod.blocks import controller
 from tests.hexapod.machines import Machine, machines, rotation

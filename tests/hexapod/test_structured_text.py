@@ -10,10 +10,10 @@ import softkin
 from numpy.testing import assert_allclose
 from softkin import Status
 
-from derive.mechanism import Role
+from derive.description.mechanism import Role
+from derive.ir.program import Status as Outcome
+from derive.kinematics.parameters import machine_parameters
 from derive.mechanisms.kin_hexapod import MECHANISM
-from derive.parameters import machine_parameters
-from derive.program import Status as Outcome
 from tests.execution.controller import BAD_INPUT, IMPOSSIBLE, NOT_INITIALIZED, OK, UNREACHABLE, Controller
 from tests.execution.statements import Statements
 from tests.execution.test_every_statement import unreachable

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.mechanisms.loops import LOOPS, LoopMachine, loop_machines_of
 
 

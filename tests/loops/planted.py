@@ -12,7 +12,7 @@ from types import ModuleType
 import softkin
 from softkin._scalar import root
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.mechanisms.loops import LOOPS, LoopMachine, loop_machines_of
 
 

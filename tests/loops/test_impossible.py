@@ -9,8 +9,8 @@ import sympy as sp
 from numpy.typing import NDArray
 from softkin import KinematicsError, Status
 
-from derive.reach import discs_meet
-from derive.vectors import vector
+from derive.description.reach import discs_meet
+from derive.geometry.vectors import vector
 
 Array = NDArray[np.float64]
 ARM = {"inner_arm": 100.0, "outer_arm": 200.0}

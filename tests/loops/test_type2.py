@@ -7,7 +7,7 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.execution.controller import OK, UNREACHABLE, Controller
 from tests.execution.units import compiled
 from tests.loops.crossings import Crossing, crossing_of

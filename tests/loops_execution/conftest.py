@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.loops_execution.machines import LOOPS, Loop, loops_of
 
 

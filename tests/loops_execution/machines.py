@@ -11,9 +11,9 @@ import softkin
 from numpy.random import Generator
 from softkin import KinematicsError, Status
 
-from derive.catalogue import catalogue
-from derive.mechanism import Mechanism, Parameter, Role
-from derive.parameters import machine_parameters
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism, Parameter, Role
+from derive.kinematics.parameters import machine_parameters
 from tests.execution.controller import OK, Controller
 from tests.execution.samples import Sample, tilted
 from tests.execution.units import compiled

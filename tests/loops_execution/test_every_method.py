@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.execution.comparisons import POSELESS
 from tests.execution.units import compiled
 from tests.loops_execution.answers import COMPARISONS

@@ -6,7 +6,7 @@ from itertools import product
 
 import pytest
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.execution import (
     test_axis_settings,
     test_blocks_alone,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import softkin
 
-from derive.catalogue import catalogue
-from derive.mechanism import Mechanism
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism
 from tests.execution.controller import OK, Controller
 from tests.execution.units import compiled
 from tests.mechanisms.closure import Array

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.execution.breakage import Break, texts
 from tests.execution.controller import OK, Controller
 from tests.execution.units import compiled_text, file_of, text_of

@@ -13,9 +13,11 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from derive.frames import Motion
-from derive.mechanism import Mechanism, Turning, X, Y, Z
-from derive.program import DEGREE
+from derive.description.mechanism import Mechanism, Turning, X, Y, Z
+from derive.geometry.frames import Motion
+from derive.ir.constants import (
+    DEGREE,
+)
 
 Array = NDArray[np.float64]
 STEP = 1e-30

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import pytest
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.mechanisms.loops import LOOPS, loop_machines_of
 from tests.mechanisms.machines import MECHANISMS, Machine, machines_of
 

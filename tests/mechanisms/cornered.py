@@ -7,8 +7,8 @@ from functools import cache
 
 import numpy as np
 
-from derive.catalogue import catalogue
-from derive.mechanism import Mechanism
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism
 from tests.mechanisms.closure import Array
 from tests.mechanisms.corners import DISTANCES, Corner, can_be_at, corners, factor_program
 from tests.mechanisms.loops import loop_machines_of

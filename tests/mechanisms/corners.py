@@ -15,15 +15,27 @@ import numpy as np
 import sympy as sp
 from numpy.random import Generator
 
-from derive.assembling import assembled
-from derive.forward import derivation_at_axes, pose_at_axes
-from derive.inverse import solve_pose
-from derive.mechanism import Mechanism
-from derive.parameters import SCALE, machine_parameters, machine_scale
-from derive.passes import assemble
-from derive.program import DEGREE, Output, Program
-from derive.run import evaluate
-from derive.searching import solve_both
+from derive.description.mechanism import Mechanism
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.interpret import evaluate
+from derive.ir.passes import assemble
+from derive.ir.program import (
+    Output,
+    Program,
+)
+from derive.ir.symbols import (
+    SCALE,
+)
+from derive.kinematics.assembly import assembled
+from derive.kinematics.forward import derivation_at_axes, pose_at_axes
+from derive.kinematics.inverse import solve_pose
+from derive.kinematics.parameters import (
+    machine_parameters,
+    machine_scale,
+)
+from derive.kinematics.scanned import solve_both
 from tests.mechanisms.closure import Array
 from tests.mechanisms.machines import Machine
 

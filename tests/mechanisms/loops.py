@@ -12,8 +12,8 @@ import sympy as sp
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from derive.catalogue import catalogue
-from derive.mechanism import Mechanism, Role, Turning
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism, Role, Turning
 from tests.mechanisms.closure import POSITION, Array, Closure, derivative
 from tests.mechanisms.machines import TURNS, Machine
 

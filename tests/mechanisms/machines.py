@@ -11,9 +11,9 @@ import softkin
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from derive.catalogue import catalogue
-from derive.frames import Motion
-from derive.mechanism import Joint, Mechanism, Parameter, Role
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Joint, Mechanism, Parameter, Role
+from derive.geometry.frames import Motion
 from tests.mechanisms.closure import Array, Closure
 
 MECHANISMS = tuple(m for _, m in catalogue() if not m.rods and not m.is_orientation and m.search is None)

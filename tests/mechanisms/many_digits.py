@@ -8,7 +8,23 @@ from functools import cache
 import mpmath
 import sympy as sp
 
-from derive.program import DEGREE, EDGE, Atan2, Let, NearestOnArc, NearestPeriod, Program, Require, Root, Select, Status
+from derive.ir.constants import (
+    DEGREE,
+    EDGE,
+)
+from derive.ir.primitives import (
+    Atan2,
+    NearestOnArc,
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Program,
+    Require,
+    Status,
+)
 
 DIGITS = 60
 Number = mpmath.mpf

@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 from softkin import Status
 
-from derive.mechanism import Role
+from derive.description.mechanism import Role
 from tests.mechanisms.closure import Array
 from tests.mechanisms.machines import LENGTHS, Machine
 from tests.mechanisms.test_round_trip import slots

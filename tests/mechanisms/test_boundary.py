@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from softkin import Status
 
-from derive.mechanism import Mechanism, Role, Turning
+from derive.description.mechanism import Mechanism, Role, Turning
 from tests.mechanisms.both_ways import inverse
 from tests.mechanisms.closure import Array
 from tests.mechanisms.loci import Locus, loci

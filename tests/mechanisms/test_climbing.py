@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from softkin import Status
 
-from derive.mechanism import Kind, Mechanism
+from derive.description.mechanism import Kind, Mechanism
 from tests.mechanisms.machines import Machine
 from tests.mechanisms.machines import machine as machine_of
 from tests.mechanisms.test_limits import fitting, one_pose, outcome

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from softkin import Status
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.mechanisms.closure import Array
 from tests.mechanisms.loci import Locus, coinciding, loci
 from tests.mechanisms.machines import MECHANISMS, Machine, bare_machine, machine, machines_of

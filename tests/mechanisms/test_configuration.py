@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from softkin import Status
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.mechanisms.both_ways import forward, inverse
 from tests.mechanisms.loci import loci
 from tests.mechanisms.machines import Machine

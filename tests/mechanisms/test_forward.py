@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import softkin
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.mechanisms.closure import ONE_DEGREE, Array
 from tests.mechanisms.hand_written import FORMULAS
 from tests.mechanisms.machines import MECHANISMS, Machine, machines_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from derive.mechanism import Mechanism, Turning
+from derive.description.mechanism import Mechanism, Turning
 from tests.mechanisms.closure import Array
 from tests.mechanisms.machines import REGULAR, Machine
 

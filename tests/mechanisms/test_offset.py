@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from softkin import KinematicsError, Status
 
-from derive.mechanism import Mechanism, Role, Turning
+from derive.description.mechanism import Mechanism, Role, Turning
 from tests.mechanisms.closure import Array
 from tests.mechanisms.machines import Machine
 from tests.mechanisms.refusals import refusal

@@ -6,7 +6,7 @@ import numpy as np
 import softkin
 from softkin import Status
 
-from derive.mechanism import Mechanism, Turning
+from derive.description.mechanism import Mechanism, Turning
 from tests.mechanisms.closure import Array
 from tests.mechanisms.machines import Machine
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 import softkin
 
-from derive.catalogue import catalogue
-from derive.mechanism import Kind, Mechanism
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Kind, Mechanism
 from tests.mechanisms.machines import Machine
 
 PACKAGE = Path(softkin.__file__).resolve().parents[1]

@@ -7,7 +7,7 @@ import pytest
 import softkin
 from softkin import Status
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.mechanisms.cornered import APART, KR6_D3, PAIRED, SPECIAL, places, poses
 from tests.mechanisms.corners import factor_program
 from tests.mechanisms.robots import UR5

@@ -8,7 +8,7 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.mechanism import Mechanism, Role
+from derive.description.mechanism import Mechanism, Role
 from tests.mechanisms.machines import LENGTHS, Machine
 
 

@@ -9,7 +9,7 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.mechanisms.closure import Array
 from tests.mechanisms.machines import Machine
 from tests.mechanisms.paths import straight, tour

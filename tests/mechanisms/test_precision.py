@@ -15,11 +15,11 @@ import pytest
 import softkin
 from softkin import KinematicsError
 
-from derive.build import build
-from derive.catalogue import catalogue
-from derive.kinematics import Kinematics
-from derive.mechanism import Mechanism, Role
-from derive.program import Status
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism, Role
+from derive.ir.program import Status
+from derive.kinematics.build import build
+from derive.kinematics.kinematics import Kinematics
 from tests.execution.controller import OK, Controller
 from tests.execution.units import compiled
 from tests.mechanisms.machines import LENGTHS

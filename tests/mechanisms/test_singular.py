@@ -7,7 +7,7 @@ import pytest
 import softkin
 from softkin import Status
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.mechanisms.both_ways import inverse
 from tests.mechanisms.closure import Array
 from tests.mechanisms.loci import Locus, loci

@@ -12,8 +12,8 @@ import pytest
 import softkin
 from softkin import KinematicsError, Status
 
-from derive.catalogue import catalogue
-from derive.mechanism import Mechanism, Role
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism, Role
 from tests.mechanisms.closure import Array
 from tests.mechanisms.machines import LENGTHS
 

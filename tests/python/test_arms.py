@@ -4,8 +4,19 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.emit.arms import Arms, Item, in_arms, spared
-from derive.program import Let, Require, Root, Select, Status, real
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Require,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.optimize.control_flow import Arms, Item, in_arms, spared
 
 A, B, C, D, E, F, R, X, Y = (real(n) for n in "abcdefrxy")
 REGULAR, NEAR = sp.Gt(R, 1), sp.Lt(X, 2)

@@ -5,11 +5,21 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 
-from derive.emit.arms import Arms
-from derive.emit.guards import PositiveRoot, guarded
-from derive.emit.python_printer import ScalarPrinter
-from derive.emit.python_program import Refusals, item_lines
-from derive.program import Let, Require, Root, Status, real
+from derive.emit.python.printer import ScalarPrinter
+from derive.emit.python.program import Refusals, item_lines
+from derive.ir.primitives import (
+    Root,
+)
+from derive.ir.program import (
+    Let,
+    Require,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.optimize.control_flow import Arms
+from derive.optimize.guards import PositiveRoot, guarded
 
 A, B, D, R, S, X, Y = (real(n) for n in "abdrsxy")
 SQUARE = Let(S, X * Y)

@@ -11,11 +11,29 @@ from hypothesis import strategies as st
 from softkin import _array, _scalar
 from softkin._types import Status as Code
 
-from derive.emit.python_layout import WIDTH, fold
-from derive.emit.python_printer import ArrayPrinter, ScalarPrinter, literal, spelled
-from derive.emit.python_program import Argument, Method, array_body, scalar_body
-from derive.program import DEGREE, Atan2, Let, NearestPeriod, Output, Program, Require, Root, Select, Status, real
-from derive.run import evaluate, run
+from derive.emit.python.layout import WIDTH, fold
+from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, literal, spelled
+from derive.emit.python.program import Argument, Method, array_body, scalar_body
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.interpret import evaluate, run
+from derive.ir.primitives import (
+    Atan2,
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
 
 NAMES = ("first", "second", "third")
 LEAVES = st.sampled_from([*map(real, NAMES), DEGREE, sp.Integer(2), sp.Integer(-3), sp.Rational(1, 3), sp.Float("1e-12")])

@@ -4,10 +4,23 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derive.emit.arms import Arms
-from derive.emit.python_printer import ScalarPrinter
-from derive.emit.read_once import LONGEST, Grouped, written_where_read
-from derive.program import Atan2, Let, NearestPeriod, Require, Root, Select, Status, real
+from derive.emit.python.printer import ScalarPrinter
+from derive.ir.primitives import (
+    Atan2,
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Require,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.optimize.control_flow import Arms
+from derive.optimize.inline import LONGEST, Grouped, written_where_read
 
 A, B, C, D, E, F, R, X, Y, Z = (real(n) for n in "abcdefrxyz")
 REGULAR = sp.Gt(R, 1)

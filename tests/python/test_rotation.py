@@ -10,10 +10,12 @@ from softkin import Diagnosis, Status
 from softkin._array_rotation import made_rotations
 from softkin._rotation import in_words, made_rotation
 
-from derive.diagnosis import rotation_texts
-from derive.mechanism import ROTATION_ENTRIES
-from derive.orthonormal import rotation_program
-from derive.run import run
+from derive.equations.rotation_repair import rotation_program
+from derive.ir.interpret import run
+from derive.ir.symbols import (
+    ROTATION_ENTRIES,
+)
+from derive.report.reasons import rotation_texts
 from tests.orthonormal import Array, error, mirrored, repaired, single, slightly_off, too_far_off
 
 SEEDS = st.integers(0, 2**32 - 1)

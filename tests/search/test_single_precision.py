@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from softkin import KinematicsError, Status
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from derive.mechanisms.kin_ac6_rzryryrxryrz_j6offset import MECHANISM
 from tests.execution.controller import BAD_INPUT, OK, Controller
 from tests.execution.units import compiled

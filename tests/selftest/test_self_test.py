@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from derive.catalogue import catalogue
-from derive.mechanism import Mechanism
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism
 from tests.execution.breakage import MECHANISM, WRONG, texts
 from tests.execution.units import FOLDER, file_of, shared_texts, text_of
 from tests.selftest.planted import planted

@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from softkin import Frame, KinematicsError, Status
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.execution.controller import OK, UNREACHABLE, Controller
 from tests.execution.units import compiled
 from tests.turns.axes import Axes, robot_of

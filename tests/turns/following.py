@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from softkin import Frame
 
-from derive.mechanism import Mechanism
+from derive.description.mechanism import Mechanism
 from tests.turns.axes import REACH, Axes, TurningAxis
 from tests.turns.callers import Asked, Caller
 from tests.turns.ranges import GAP_THAT_NO_STEP_CROSSES, Range, number_of

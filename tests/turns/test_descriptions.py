@@ -6,10 +6,10 @@ import re
 
 import pytest
 
-from derive.catalogue import catalogue
-from derive.emit.st_names import input_name
-from derive.mechanism import Mechanism, Role
-from derive.parameters import machine_parameters
+from derive.description.catalogue import catalogue
+from derive.description.mechanism import Mechanism, Role
+from derive.emit.st.names import input_name
+from derive.kinematics.parameters import machine_parameters
 from tests.execution.controller import NOT_INITIALIZED, OK, Controller
 from tests.execution.units import compiled, text_of
 from tests.execution.values import PROPERTIES_TYPE, meaningless

@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from derive.mechanism import Mechanism
-from derive.program import ONE_TURN
+from derive.description.mechanism import Mechanism
+from derive.ir.constants import (
+    ONE_TURN,
+)
 from tests.turns.axes import FULL, MECHANISMS, TurningAxis, turning_axes
 from tests.turns.callers import InPython, OnController
 from tests.turns.following import Make, check_anywhere, check_edges, follow

@@ -1,0 +1,60 @@
+"""Sums of angles: their names, and recognising a product of sines and cosines as the sine of a sum."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from itertools import product
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, polynomial, sine
+from derive.ir.symbols import (
+    real,
+)
+
+Terms = tuple[tuple[sp.Symbol, int], ...]
+
+
+def name_of(terms: Terms) -> str:
+    """a1 + a2 is "a12", theta + phi is "theta_phi", a2 - a1 is "a2_from_a1"."""
+    plus = [a.name for a, sign in terms if sign > 0]
+    minus = [a.name for a, sign in terms if sign < 0]
+    return "_from_".join(_joined(names) for names in (plus, minus) if names)
+
+
+def _joined(names: Sequence[str]) -> str:
+    parts = [re.fullmatch(r"([a-z]+)(\d+)", n) for n in names]
+    found = [p for p in parts if p is not None]
+    if len(found) == len(names) and len({p[1] for p in found}) == 1:
+        return found[0][1] + "".join(p[2] for p in found)
+    return "_".join(names)
+
+
+def composite(terms: Terms) -> sp.Symbol:
+    """The symbol of a sum of angles."""
+    return real(name_of(terms))
+
+
+def terms_of(argument: sp.Expr, angles: Sequence[sp.Symbol]) -> Terms | None:
+    """The angles of an argument with their signs; None where it is not a plain sum of angles."""
+    found = tuple((a, int(argument.coeff(a))) for a in angles if argument.coeff(a) in (1, -1))
+    rebuilt = sp.Add(*[a * s for a, s in found])
+    return found if found and sp.expand(argument - rebuilt) == 0 else None
+
+
+def recognise(expression: sp.Expr, angles: Sequence[sp.Symbol]) -> tuple[int, str, Terms] | None:
+    """(sign, "cos" or "sin", terms) where the expression is ± the cosine or sine of a sum of two or more angles."""
+    present = tuple(a for a in angles if expression.free_symbols & {sine(a), cosine(a)})
+    if len(present) < 2 or expression.free_symbols - {f(a) for a in present for f in (sine, cosine)}:
+        return None
+    for signs in product((1, -1), repeat=len(present) - 1):
+        terms: Terms = tuple(zip(present, (1, *signs), strict=True))
+        argument = sp.Add(*[a * s for a, s in terms])
+        for word, function in (("cos", sp.cos), ("sin", sp.sin)):
+            form = polynomial(function(argument), present, ())
+            if sp.expand(expression - form) == 0:
+                return 1, word, terms
+            if sp.expand(expression + form) == 0:
+                return -1, word, terms
+    return None

@@ -1,0 +1,111 @@
+"""Normal forms: polynomials in the sines and cosines of angles, modulo sin^2 + cos^2 = 1.
+
+An angle `a2` is written through two symbols, `sin_a2` and `cos_a2`, from the first equation to the last
+statement: what is an unknown of the solver today is a named temporary of the program tomorrow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cache
+
+import sympy as sp
+
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.symbols import (
+    real,
+)
+
+
+def sine(angle: sp.Symbol) -> sp.Symbol:
+    """The symbol of an angle's sine."""
+    return real(f"sin_{angle.name}")
+
+
+def cosine(angle: sp.Symbol) -> sp.Symbol:
+    """The symbol of an angle's cosine."""
+    return real(f"cos_{angle.name}")
+
+
+def polynomial(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence[sp.Symbol]) -> sp.Expr:
+    """The expanded polynomial of an expression: sines and cosines of sums become products of symbols.
+
+    `signs` are parameters that are +1 or -1 (never zero: their squares are one, and they leave the argument of a
+    cosine), and flags that are 0 or 1 (their squares are themselves).
+    """
+    terms = sp.expand_trig(sp.expand(expression))  # first: a sign leaves an argument only where nothing is added to it
+    expanded = _without_signs(terms, signs).subs(sp.pi, 180 * DEGREE)
+    table: dict[sp.Expr, sp.Expr] = {}
+    for angle in angles:
+        table[sp.sin(angle)] = sine(angle)
+        table[sp.cos(angle)] = cosine(angle)
+    return reduce_units(expanded.xreplace(table), angles, signs)
+
+
+def _without_signs(expression: sp.Expr, signs: Sequence[sp.Symbol]) -> sp.Expr:
+    for sign in (s for s in signs if s.is_nonzero):
+        expression = _without_sign(expression, sign)
+    return expression
+
+
+def _without_sign(expression: sp.Expr, sign: sp.Symbol) -> sp.Expr:
+    """cos(s u) = cos(u), sin(s u) = s sin(u) for s = ±1."""
+    return expression.replace(
+        lambda node: isinstance(node, sp.sin | sp.cos) and _is_multiple(node.args[0], sign),
+        lambda node: node.func(sp.expand(node.args[0] / sign)) * (sign if isinstance(node, sp.sin) else 1),
+    )
+
+
+def _is_multiple(argument: sp.Expr, sign: sp.Symbol) -> bool:
+    return all(sign in term.free_symbols for term in sp.Add.make_args(sp.expand(argument)))
+
+
+@cache
+def _reduction(angles: tuple[sp.Symbol, ...], signs: tuple[sp.Symbol, ...]) -> dict[sp.Symbol, sp.Expr]:
+    table: dict[sp.Symbol, sp.Expr] = {sine(a): 1 - cosine(a) ** 2 for a in angles}
+    table.update({s: sp.Integer(1) if s.is_nonzero else s for s in signs})
+    return table
+
+
+def reduce_units(expression: sp.Expr, angles: Sequence[sp.Symbol], signs: Sequence[sp.Symbol] = ()) -> sp.Expr:
+    """The normal form: squares of sines become 1 - cos^2, squares of signs 1, of flags the flag; everything expanded."""
+    table = _reduction(tuple(angles), tuple(signs))
+
+    def lower(power: sp.Pow) -> sp.Expr:
+        return table[power.base] ** (power.exp // 2) * power.base ** (power.exp % 2)
+
+    expanded = sp.expand(expression)
+    while True:
+        lowered = expanded.replace(
+            lambda n: isinstance(n, sp.Pow) and n.base in table and n.exp.is_Integer and n.exp >= 2, lower
+        )
+        if lowered == expanded:
+            return expanded
+        expanded = sp.expand(lowered)
+
+
+def linear_coefficients(expression: sp.Expr, atoms: Sequence[sp.Symbol]) -> tuple[list[sp.Expr], sp.Expr] | None:
+    """Coefficients of the atoms and the rest, where the expression is linear in them jointly; else None."""
+    try:
+        poly = sp.Poly(expression, *atoms)
+    except sp.PolynomialError:
+        return None
+    if poly.total_degree() > 1:
+        return None
+    coefficients = [sp.sympify(poly.coeff_monomial(atom)) for atom in atoms]
+    return coefficients, sp.sympify(poly.coeff_monomial(1))
+
+
+def split_known(expression: sp.Expr, unknown: Iterable[sp.Symbol]) -> tuple[sp.Expr, sp.Expr]:
+    """The sum of the terms that hold an unknown, and the sum of those that do not."""
+    atoms = set(unknown)
+    terms = sp.Add.make_args(sp.expand(expression))
+    moving = sp.Add(*[t for t in terms if t.free_symbols & atoms])
+    return moving, sp.Add(*[t for t in terms if not t.free_symbols & atoms])
+
+
+def is_compound(expression: sp.Expr) -> bool:
+    """Whether an expression is worth a name of its own: anything but a symbol, a number, or their negative."""
+    return not (expression.is_Atom or (-expression).is_Atom)

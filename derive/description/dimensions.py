@@ -1,0 +1,136 @@
+"""The dimensions of a machine: the parameters of a description, by what they are, and conditions between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import sympy as sp
+
+from derive.description.quantity import Quantity
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.program import (
+    Let,
+)
+from derive.ir.symbols import (
+    real,
+)
+
+
+class Role(Enum):
+    """What a parameter is: decides unit, type and default."""
+
+    LENGTH = "length"
+    SIGNED_LENGTH = "signed length"
+    """A length that may be negative, but not zero."""
+    DISTANCE = "distance"
+    """A length that may be zero or negative."""
+    PITCH = "pitch"
+    GEAR = "gear"
+    COUPLING = "coupling"
+    RATIO = "ratio"
+    FLAG = "flag"
+    SIGN = "sign"
+    ANGLE = "angle"
+
+
+@dataclass(frozen=True)
+class Parameter(Quantity):
+    """An input of the machine. A length has no default: a forgotten one must not move a machine."""
+
+    name: str
+    role: Role
+    meaning: str
+    unit: str
+    low: float
+    high: float
+    low_open: bool
+    """The interval is ]low .. high] instead of [low .. high]."""
+    default: float | None
+    nominal: float
+    """For drawings and tests."""
+    is_public: bool = True
+
+    @property
+    def has_vendor_range(self) -> bool:
+        """Whether the upper end is the vendor's and not merely the largest input."""
+        return self.high < 1e9
+
+
+def length(name: str, meaning: str, *, nominal: float, high: float = 1e9) -> Parameter:
+    """A length that must be given and be more than zero."""
+    symbol = sp.Symbol(name, positive=True)
+    return Parameter(symbol, name, Role.LENGTH, meaning, "u", 0.0, high, True, None, nominal)
+
+
+def optional_length(name: str, meaning: str, *, nominal: float, high: float = 1e9) -> Parameter:
+    """A length that may be zero, and is when not given."""
+    symbol = sp.Symbol(name, nonnegative=True)
+    return Parameter(symbol, name, Role.DISTANCE, meaning, "u", 0.0, high, False, 0.0, nominal)
+
+
+def signed_length(name: str, meaning: str, *, nominal: float) -> Parameter:
+    """A length of either sign, as in tables of Denavit-Hartenberg parameters: it must be given and not be zero."""
+    symbol = sp.Symbol(name, real=True, nonzero=True)
+    return Parameter(symbol, name, Role.SIGNED_LENGTH, meaning, "u", -1e9, 1e9, False, None, nominal)
+
+
+def pitch(name: str, meaning: str, *, nominal: float, low: float = -1e9, high: float = 1e9) -> Parameter:
+    """A travel per revolution, zero when not given."""
+    return Parameter(real(name), name, Role.PITCH, meaning, "u/rev", low, high, False, 0.0, nominal)
+
+
+def gear(name: str, meaning: str, *, nominal: float) -> Parameter:
+    """A travel per degree, zero when not given."""
+    return Parameter(real(name), name, Role.GEAR, meaning, "u/deg", -1e9, 1e9, False, 0.0, nominal)
+
+
+def coupling(name: str, meaning: str, *, nominal: float) -> Parameter:
+    """A ratio of one motor's turn to another joint's turn, zero when not given."""
+    return Parameter(real(name), name, Role.COUPLING, meaning, "1", -1e3, 1e3, False, 0.0, nominal)
+
+
+def angle(
+    name: str, meaning: str, *, nominal: float, low: float = -360.0, high: float = 360.0, default: float | None = None
+) -> Parameter:
+    """An angle of the machine, in degrees; `radians(p)` inside expressions."""
+    return Parameter(real(name), name, Role.ANGLE, meaning, "deg", low, high, False, default, nominal)
+
+
+def coordinate(name: str, meaning: str, *, nominal: float) -> Parameter:
+    """A coordinate of a point, with a sign, that must be given."""
+    return Parameter(real(name), name, Role.DISTANCE, meaning, "u", -1e9, 1e9, False, None, nominal)
+
+
+def distance(name: str, meaning: str, *, nominal: float, low: float = -1e9) -> Parameter:
+    """A length with a sign, zero when not given."""
+    return Parameter(real(name), name, Role.DISTANCE, meaning, "u", low, 1e9, False, 0.0, nominal)
+
+
+def radians(parameter: Parameter) -> sp.Expr:
+    """An angle parameter as it stands in sines and cosines."""
+    return parameter * DEGREE
+
+
+def flag(name: str, meaning: str, *, nominal: bool = False) -> Parameter:
+    """A choice that is off when not given; 0 or 1 inside expressions."""
+    symbol = sp.Symbol(name, nonnegative=True)  # its square is itself: see algebra.reduce_units
+    return Parameter(symbol, name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, float(nominal))
+
+
+def sign(name: str, meaning: str, *, nominal: int = 1) -> Parameter:
+    """A direction: +1 or -1."""
+    symbol = sp.Symbol(name, real=True, nonzero=True)  # its square is one
+    return Parameter(symbol, name, Role.SIGN, meaning, "", -1.0, 1.0, False, 1.0, float(nominal))
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """A condition between parameters that Initialize checks."""
+
+    condition: sp.Basic
+    message: str
+    steps: tuple[Let, ...] = ()
+    """Values under names that this condition and those after it read."""

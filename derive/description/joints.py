@@ -1,0 +1,134 @@
+"""The joints of a description: how they move, what their values mean, and their ranges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import TypedDict, Unpack
+
+import sympy as sp
+
+from derive.description.quantity import Quantity
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    real,
+)
+
+Interval = tuple[float, float]
+
+
+class Kind(Enum):
+    """How a joint moves, and how its values are read."""
+
+    LINEAR = "linear"
+    ROTARY = "rotary"
+    HELICAL = "helical"
+    """Turns, and is declared Linear because it carries another axis along (values in degrees)."""
+
+
+@dataclass(frozen=True)
+class Joint(Quantity):
+    """One axis: axis value = motor value + offset, joint value = motor value + coupling."""
+
+    name: str
+    kind: Kind
+    meaning: str
+    multi_turn: bool = False
+    """Has a period byte in the configuration."""
+    offset_range: Interval | None = None
+    limit_range: Interval | None = None
+    """The vendor's ranges, where the vendor gives them."""
+    coupling: sp.Expr = sp.Integer(0)
+    """What motors of earlier axes add to this joint: linear in their `motor` symbols."""
+    pitch: sp.Expr = sp.Integer(0)
+    """Where this is not zero, the joint is always limited (to `limit_range` where no limit is given)."""
+    domain: Interval | None = None
+    """What the closure itself allows (degrees or length), reported as the axis' range; None: anything."""
+    nominal: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "coupling", sp.sympify(self.coupling))
+        object.__setattr__(self, "pitch", sp.sympify(self.pitch))
+
+    @property
+    def key(self) -> str:
+        """The neutral lower-case name: the end of `offset_a1`, `lower_a1`."""
+        return self.name.lower()
+
+    @property
+    def motor(self) -> sp.Symbol:
+        """The motor value: axis value less offset. Without gear coupling it is the joint value."""
+        return real(f"motor_{self.key}")
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether axis values are degrees."""
+        return self.kind is not Kind.LINEAR
+
+    @property
+    def unit(self) -> sp.Expr:
+        """One unit of the axis value in units of the joint value."""
+        return DEGREE if self.is_angle else sp.Integer(1)
+
+    @property
+    def axis(self) -> sp.Symbol:
+        """The axis value as the controller has it (degrees or user's length unit)."""
+        return real(f"axis_{self.key}")
+
+    @property
+    def reference(self) -> sp.Symbol:
+        """The reference value of the axis."""
+        return real(f"ref_{self.key}")
+
+    @property
+    def turn(self) -> sp.Symbol:
+        """The commanded period number: 0 where it is open."""
+        return real(f"turn_{self.key}")
+
+    @property
+    def offset(self) -> sp.Symbol:
+        """The parameter `offset_…`: the axis value at joint value zero."""
+        return real(f"offset_{self.key}")
+
+
+class JointDetails(TypedDict, total=False):
+    """What a description may add to a joint; see `Joint`."""
+
+    offset_range: Interval
+    limit_range: Interval
+    coupling: sp.Expr
+    pitch: sp.Expr
+    domain: Interval
+    nominal: float
+
+
+def rotary(name: str, meaning: str, *, value: str | None = None, **details: Unpack[JointDetails]) -> Joint:
+    """A rotary joint with a period byte: its type allows more than 360 degrees.
+
+    `value` is what equations call the joint's value, where a length of the machine has the axis' name.
+    """
+    return Joint(_joint_symbol(value or name), name, Kind.ROTARY, meaning, multi_turn=True, **details)
+
+
+def arc(name: str, meaning: str, **details: Unpack[JointDetails]) -> Joint:
+    """A rotary joint that never turns round: no period byte."""
+    return Joint(_joint_symbol(name), name, Kind.ROTARY, meaning, multi_turn=False, **details)
+
+
+def helical(name: str, meaning: str, **details: Unpack[JointDetails]) -> Joint:
+    """A joint that turns and carries another axis along: declared Linear, values in degrees."""
+    return Joint(_joint_symbol(name), name, Kind.HELICAL, meaning, multi_turn=True, **details)
+
+
+def linear(name: str, meaning: str, **details: Unpack[JointDetails]) -> Joint:
+    """A linear joint."""
+    return Joint(_joint_symbol(name), name, Kind.LINEAR, meaning, **details)
+
+
+def _joint_symbol(name: str) -> sp.Symbol:
+    """The joint value's symbol; x, y and z are taken by the pose."""
+    key = name.lower()
+    return real(f"joint_{key}" if key in COORDINATE_NAMES else key)

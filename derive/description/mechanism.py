@@ -1,0 +1,357 @@
+"""The vocabulary of a mechanism description: joints, parameters, closure, task, branches.
+
+A description states equations and their meaning, and nothing that was solved by hand. Quantities take
+part in SymPy expressions directly: `Rz(A1) * Tx(link)`, `branch("elbow", sin(A2), right=+1, left=-1)`.
+Inside expressions angles are in radians; `TURN` is one revolution, for couplings given per revolution.
+Joints and dimensions have files of their own; descriptions import everything from here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+
+import sympy as sp
+
+from derive.description.dimensions import (
+    Constraint,
+    Parameter,
+    Role,
+    angle,
+    coordinate,
+    coupling,
+    distance,
+    flag,
+    gear,
+    length,
+    optional_length,
+    pitch,
+    radians,
+    sign,
+    signed_length,
+)
+from derive.description.joints import (
+    Interval,
+    Joint,
+    Kind,
+    arc,
+    helical,
+    linear,
+    rotary,
+)
+from derive.description.quantity import Quantity
+from derive.geometry.frames import Chain
+from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    ROTATION_ENTRIES,
+    real,
+)
+
+TURN = 2 * sp.pi
+X, Y, Z = (Quantity(real(name)) for name in COORDINATE_NAMES)
+"""The commanded position, for closures that are not a chain."""
+ROTATION = sp.ImmutableMatrix(3, 3, ROTATION_ENTRIES)
+"""The commanded rotation, for closures that follow the whole of it."""
+
+
+__all__ = [
+    "COORDINATE_NAMES",
+    "ROTATION",
+    "ROTATION_ENTRIES",
+    "TURN",
+    "Assembly",
+    "Bound",
+    "Branch",
+    "Constraint",
+    "DescriptionError",
+    "Interval",
+    "Joint",
+    "Kind",
+    "Limited",
+    "Mechanism",
+    "Parameter",
+    "Rod",
+    "Search",
+    "Role",
+    "Task",
+    "Turning",
+    "Vendor",
+    "X",
+    "Y",
+    "Z",
+    "angle",
+    "arc",
+    "assembly",
+    "bound",
+    "branch",
+    "crossing",
+    "coordinate",
+    "coupling",
+    "distance",
+    "flag",
+    "gear",
+    "helical",
+    "length",
+    "limited",
+    "linear",
+    "on_plate",
+    "optional_length",
+    "pitch",
+    "radians",
+    "rod",
+    "rotary",
+    "search",
+    "sign",
+    "signed_length",
+]
+
+
+class DescriptionError(Exception):
+    """A mechanism description that cannot be right; the message says what and where."""
+
+
+class Vendor(Enum):
+    """Who sells the geometry: decides how the function block is called."""
+
+    SINSEGYE = "Sinsegye SF512x"
+    REXROTH = "Bosch Rexroth ctrlX"
+    CODESYS = "CODESYS SM3_Transformation"
+    TEXTBOOK = "textbook"
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Two solutions told apart by the sign of an indicator: byte 1 is names[0], byte 2 names[1]."""
+
+    name: str
+    indicator: sp.Expr
+    names: tuple[str, str]
+    signs: tuple[int, int]
+    margin: str
+    """What the singularity is called where its two solutions meet."""
+
+    @property
+    def is_crossing(self) -> bool:
+        """Whether it tells the roots of a search apart: its indicator is the slope of what is searched to vanish."""
+        return bool(self.indicator is sp.nan)
+
+
+@dataclass(frozen=True)
+class Search:
+    """A joint that is searched along where no subproblem determines it, because a parameter is not zero."""
+
+    joint: Joint
+    where: Parameter
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """The two ways to assemble a closed loop, told apart by the sign of an indicator in joints and position.
+
+    The assembly mode is a parameter of the machine, `<name>_<second>`: forward kinematics gets axes alone.
+    """
+
+    name: str
+    indicator: sp.Expr
+    names: tuple[str, str]
+    signs: tuple[int, int]
+    margin: str
+    handedness: sp.Expr = sp.Integer(1)
+    """Made of parameters: where it is negative (legs numbered the other way round) the indicator's sign is reversed."""
+
+    @property
+    def parameter(self) -> str:
+        """The flag that chooses the second way."""
+        return f"{self.name}_{self.names[1]}"
+
+
+@dataclass(frozen=True)
+class Rod:
+    """A rigid rod of a loop: its end on the base side (moved by joints), its end on the plate, its length."""
+
+    name: str
+    base: tuple[sp.Expr, ...]
+    plate: tuple[sp.Expr, ...]
+    length: sp.Expr
+    base_cone: sp.Expr | None = None
+    """The largest angle between the rod and its direction at the home pose, as its joint on the base sees it (radians)."""
+    plate_cone: sp.Expr | None = None
+    """The same, as its joint on the plate sees it."""
+
+    @property
+    def equation(self) -> sp.Expr:
+        """|plate - base|^2 - length^2."""
+        return sp.Add(*[(p - b) ** 2 for p, b in zip(self.plate, self.base, strict=True)]) - self.length**2
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A quantity of joints and position that must not exceed a size (the swing of a ball joint)."""
+
+    value: sp.Expr
+    largest: sp.Expr
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Limited:
+    """A quantity with limits of its own that no axis can see (relative elbow, X of an H-gantry)."""
+
+    name: str
+    value: sp.Expr
+    is_angle: bool
+    meaning: str
+
+
+class Turning(Enum):
+    """How much of the commanded rotation a mechanism follows."""
+
+    NONE = "none"
+    """The rotation is fixed or follows from the position: the commanded one is never read."""
+    ABOUT_Z = "about z"
+    """One turn about the machine's z: the commanded rotation is projected, tool direction first."""
+    DIRECTION = "direction"
+    """The direction of the tool, the z of the commanded rotation; the turn about it is passive."""
+    FULL = "full"
+    """The whole rotation."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is commanded: "xyz", "xy" with z met, or "" where a position kinematics is in front; and how much of the rotation."""
+
+    position: str
+    turning: Turning = Turning.NONE
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """A mechanism: its equations, and what its quantities mean. Derivation reads nothing else."""
+
+    name: str
+    vendor: Vendor
+    family: str
+    source: str
+    summary: str
+    joints: tuple[Joint, ...]
+    task: Task
+    parameters: tuple[Parameter, ...] = ()
+    chain: Chain | None = None
+    closure: tuple[sp.Expr, ...] = ()
+    rods: tuple[Rod, ...] = ()
+    """Closure equations that say that a rod is rigid."""
+    bars: tuple[Rod, ...] = ()
+    """What is drawn, where the rods leave bodies out or stand for others: a bar between two points, as long as stated."""
+    assembly: Assembly | None = None
+    home: tuple[sp.Expr, ...] = ()
+    """Where an iterative forward kinematics starts: x, y, z, then roll, pitch and yaw in radians (Rz Ry Rx)."""
+    bounds: tuple[Bound, ...] = ()
+    branches: tuple[Branch, ...] = ()
+    search: Search | None = None
+    positive: tuple[sp.Expr, ...] = ()
+    """Quantities whose negative mirror solution the machine does not have."""
+    limited: tuple[Limited, ...] = ()
+    constraints: tuple[Constraint, ...] = ()
+    periods: tuple[str, ...] | None = None
+    """The multi-turn axes in the order of their configuration bytes; None: the order of the axes."""
+    aliases: tuple[str, ...] = ()
+    title: str | None = None
+    """What GetKinematicsName answers; None: the name of the block."""
+    class_name: str | None = None
+    offset_interface: bool = True
+    """Whether positions of a point off the flange can be commanded (orientation mode "Axis")."""
+    notes: tuple[str, ...] = field(default=())
+    """Sentences for the user's documentation: what is our definition, what to know."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "positive", tuple(sp.sympify(v) for v in self.positive))
+        object.__setattr__(self, "closure", tuple(sp.sympify(v) for v in self.closure))
+        object.__setattr__(self, "home", tuple(sp.sympify(v) for v in self.home))
+
+    @property
+    def is_platform(self) -> bool:
+        """Whether this is a plate that follows the whole commanded pose: forward kinematics iterates."""
+        return self.chain is None and self.task.turning is Turning.FULL
+
+    @property
+    def is_orientation(self) -> bool:
+        """Whether this is what a position kinematics carries: it turns the flange, and its position only follows."""
+        return self.chain is not None and not self.task.position
+
+    @property
+    def is_position(self) -> bool:
+        """Whether a position kinematics: it can carry an orientation kinematics, and follows no tool direction itself."""
+        return bool(self.task.position) and self.task.turning in (Turning.NONE, Turning.ABOUT_Z)
+
+    @property
+    def equations(self) -> tuple[sp.Expr, ...]:
+        """All stated closure equations."""
+        return (*self.closure, *(rod.equation for rod in self.rods))
+
+    @property
+    def block_name(self) -> str:
+        """The function block: the vendor's name, but never one that CODESYS itself ships."""
+        return self.name.replace("Kin_", "Softkin_", 1) if self.vendor is Vendor.CODESYS else self.name
+
+    @property
+    def period_joints(self) -> tuple[Joint, ...]:
+        """The multi-turn joints in the order of their configuration bytes."""
+        turning = {j.name: j for j in self.joints if j.multi_turn}
+        return tuple(turning[n] for n in self.periods) if self.periods is not None else tuple(turning.values())
+
+
+def branch(name: str, indicator: object, *, margin: str | None = None, **names: int) -> Branch:
+    """A branch by its indicator: `branch("elbow", sin(A2), right=+1, left=-1)`; the first name is byte 1."""
+    first, second = _two_names(f"branch {name!r}", names)
+    return Branch(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin or name)
+
+
+def crossing(name: str, **names: int) -> Branch:
+    """The roots of a search told apart by whether what is searched to vanish rises or falls with the joint."""
+    return branch(name, sp.nan, margin=None, **names)
+
+
+def search(joint: Joint, *, where: Parameter) -> Search:
+    """Search along a joint where the parameter is not zero; where it is zero, the closure has a closed form."""
+    return Search(joint, where)
+
+
+def assembly(name: str, indicator: object, *, margin: str, handedness: object = 1, **names: int) -> Assembly:
+    """Two assembly modes: `assembly("tcp", Y - KNEE_Y, margin="arms_aligned", below=-1, above=+1)`; the first is the default."""
+    first, second = _two_names(f"assembly {name!r}", names)
+    return Assembly(name, sp.sympify(indicator), (first[0], second[0]), (first[1], second[1]), margin, sp.sympify(handedness))
+
+
+def rod(
+    name: str,
+    base: Sequence[object],
+    plate: Sequence[object],
+    length: object,
+    base_cone: sp.Expr | None = None,
+    plate_cone: sp.Expr | None = None,
+) -> Rod:
+    """A rigid rod between a point that joints move and a point of the plate."""
+    return Rod(name, tuple(map(sp.sympify, base)), tuple(map(sp.sympify, plate)), sp.sympify(length), base_cone, plate_cone)
+
+
+def on_plate(x: object, y: object, z: object) -> tuple[sp.Expr, ...]:
+    """Where a point of the plate is, by its coordinates in the frame of the plate."""
+    return tuple(sp.Matrix([X.symbol, Y.symbol, Z.symbol]) + ROTATION * sp.Matrix([x, y, z]))
+
+
+def bound(value: object, largest: object, meaning: str) -> Bound:
+    """|value| must not exceed `largest`."""
+    return Bound(sp.sympify(value), sp.sympify(largest), meaning)
+
+
+def _two_names(what: str, names: dict[str, int]) -> tuple[tuple[str, int], tuple[str, int]]:
+    if len(names) != 2 or sorted(names.values()) != [-1, 1]:
+        raise DescriptionError(f"{what} needs two names with the signs +1 and -1, not {names}")
+    first, second = names.items()
+    return first, second
+
+
+def limited(name: str, value: object, meaning: str, *, angle: bool) -> Limited:
+    """A quantity with limits of its own, in radians or lengths."""
+    return Limited(name, sp.sympify(value), angle, meaning)

@@ -1,0 +1,65 @@
+"""Conditions on the dimensions of a machine: whether its arms can reach a common place at all."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from derive.description.dimensions import Constraint
+from derive.geometry.vectors import Vector, cross, dot, minus, vector
+from derive.ir.program import (
+    Let,
+)
+from derive.ir.symbols import (
+    real,
+)
+
+_PAIRS = ((1, 2), (1, 3), (2, 3))
+
+
+def discs_meet(centres: Sequence[Vector], radii: Sequence[sp.Expr], message: str) -> tuple[Constraint, ...]:
+    """That three discs in the plane have a point in common: what three arms reach, seen from above.
+
+    centres: x and y; radii: not negative; message: what must be the case. Every two must meet. Then all three do, unless
+    the point whose powers to the circles are equal lies between the centres and outside the discs. Where the centres lie
+    on a line there is no such point, and the pairs decide.
+    """
+    corners = tuple(vector(*(real(f"reach_{c}_{i}") for c in "xy")) for i in (1, 2, 3))
+    reaches = tuple(real(f"reach_{i}") for i in (1, 2, 3))
+    steps: list[Let] = []
+    for corner, centre, reach, radius in zip(corners, centres, reaches, radii, strict=True):
+        steps += [*_named(corner, centre), Let(reach, sp.sympify(radius))]
+    steps[0] = Let(steps[0].name, steps[0].value, "what every arm reaches, seen from above: a disc")
+    sides = tuple(_vector(f"side_{i}{j}") for i, j in _PAIRS)
+    for side, (i, j) in zip(sides, _PAIRS, strict=True):
+        steps += _named(side, minus(corners[j - 1], corners[i - 1]))
+    reached = ((reaches[i - 1] + reaches[j - 1]) ** 2 for i, j in _PAIRS)
+    pairs = (sp.Le(dot(side, side), square) for side, square in zip(sides, reached, strict=True))
+    return Constraint(sp.And(*pairs), message, tuple(steps)), _all_three(sides[0], sides[1], reaches, message)
+
+
+def _all_three(second: Vector, third: Vector, reaches: Sequence[sp.Symbol], message: str) -> Constraint:
+    """Of three discs that meet in pairs: the second and third seen from the first."""
+    power_2, power_3, area = real("power_2"), real("power_3"), real("corner_area")
+    centre = _vector("equal_power")  # times 2 * area, seen from the first corner
+    weight_2, weight_3 = real("weight_2"), real("weight_3")  # of the corners in it, times 2 * area²
+    steps = (
+        Let(area, cross(second, third)),
+        Let(power_2, dot(second, second) + reaches[0] ** 2 - reaches[1] ** 2),
+        Let(power_3, dot(third, third) + reaches[0] ** 2 - reaches[2] ** 2),
+        *_named(centre, vector(power_2 * third[1] - power_3 * second[1], power_3 * second[0] - power_2 * third[0])),
+        Let(weight_2, cross(centre, third)),
+        Let(weight_3, cross(second, centre)),
+    )
+    is_outside = sp.Or(sp.Lt(weight_2, 0), sp.Lt(weight_3, 0), sp.Gt(weight_2 + weight_3, 2 * area**2))
+    is_reached = sp.Le(dot(centre, centre), 4 * area**2 * reaches[0] ** 2)
+    return Constraint(sp.Or(is_outside, is_reached), message, steps)
+
+
+def _vector(name: str) -> Vector:
+    return vector(*(real(f"{name}_{c}") for c in "xy"))
+
+
+def _named(names: Vector, values: Vector) -> tuple[Let, ...]:
+    return tuple(Let(real(str(name)), value) for name, value in zip(names, values, strict=True))

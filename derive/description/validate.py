@@ -1,0 +1,199 @@
+"""Refuse a description that cannot be right, before anything is derived from it."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from itertools import combinations
+
+import sympy as sp
+
+from derive.algebra.angle_sums import name_of
+from derive.description.mechanism import (
+    ROTATION,
+    DescriptionError,
+    Interval,
+    Joint,
+    Mechanism,
+    Parameter,
+    Turning,
+    X,
+    Y,
+    Z,
+)
+from derive.ir.constants import (
+    DEGREE,
+)
+
+_BLOCK = re.compile(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*\Z")
+_PARAMETER = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_AXIS = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
+_RESERVED = re.compile(r"(axis|ref|turn|sigma|branch|offset|lower|upper|motor|unlimited)_|check_limits\Z|[xyz]\Z|r[123][123]\Z")
+"""Names that programs use for something else."""
+
+Expressions = tuple[tuple[str, sp.Basic], ...]
+
+
+def validate(mechanism: Mechanism) -> Mechanism:
+    """Return the mechanism, or raise `DescriptionError` with one sentence that names what is wrong."""
+    for problem in _problems(mechanism):
+        raise DescriptionError(problem)
+    return mechanism
+
+
+def _problems(mechanism: Mechanism) -> Iterator[str]:
+    yield from _names(mechanism)
+    for parameter in mechanism.parameters:
+        yield from _parameter(parameter)
+    for joint in mechanism.joints:
+        yield from _joint(mechanism, joint)
+    yield from _periods(mechanism)
+    yield from _shape(mechanism)
+    yield from _symbols(mechanism)
+    yield from _constraints(mechanism)
+
+
+def _names(mechanism: Mechanism) -> Iterator[str]:
+    for name in (mechanism.name, *mechanism.aliases):
+        if not _BLOCK.match(name):
+            yield f"{name!r} cannot name a function block"
+    if not mechanism.joints and (mechanism.task.position or mechanism.task.turning is not Turning.NONE):
+        yield "the mechanism has no joints"
+    for kind, names in (
+        ("joint", [j.name for j in mechanism.joints]),
+        ("parameter", [p.name for p in mechanism.parameters]),
+        ("branch", [b.name for b in mechanism.branches]),
+        ("limited quantity", [q.name for q in mechanism.limited]),
+        ("name", [mechanism.name, *mechanism.aliases]),
+    ):
+        for name, count in Counter(n.lower() for n in names).items():
+            if count > 1:
+                yield f"{kind} {name!r} is given {count} times"
+    for joint in mechanism.joints:
+        if not _AXIS.match(joint.name):
+            yield f"{joint.name!r} cannot name a joint: a capital letter, then letters and digits"
+    turning = [j.symbol for j in mechanism.joints if j.is_angle]
+    sums = {name_of(tuple((s, 1) for s in some)) for n in range(2, len(turning) + 1) for some in combinations(turning, n)}
+    for joint in mechanism.joints:
+        if joint.symbol.name in sums:
+            yield f"joint {joint.name!r} has the name of a sum of other joints: choose another"
+
+
+def _parameter(parameter: Parameter) -> Iterator[str]:
+    name = parameter.name
+    if not _PARAMETER.match(name) or _RESERVED.match(name):
+        yield f"{name!r} cannot name a parameter: lower-case words joined by _, and none that programs use themselves"
+    if not parameter.low < parameter.high:
+        yield f"parameter {name!r}: its range {_interval(parameter)} is empty"
+    for word, value in (("nominal value", parameter.nominal), ("default", parameter.default)):
+        if value is not None and not _contains(parameter, value):
+            yield f"parameter {name!r}: its {word} {value:g} is outside its range {_interval(parameter)}"
+
+
+def _contains(parameter: Parameter, value: float) -> bool:
+    above = value > parameter.low if parameter.low_open else value >= parameter.low
+    return above and value <= parameter.high
+
+
+def _interval(parameter: Parameter) -> str:
+    return f"{']' if parameter.low_open else '['}{parameter.low:g} .. {parameter.high:g}]"
+
+
+def _joint(mechanism: Mechanism, joint: Joint) -> Iterator[str]:
+    ranges: dict[str, Interval | None] = {
+        "offset_range": joint.offset_range,
+        "limit_range": joint.limit_range,
+        "domain": joint.domain,
+    }
+    for word, interval in ranges.items():
+        if interval is not None and not interval[0] < interval[1]:
+            yield f"joint {joint.name!r}: its {word} {interval} is empty"
+    if joint.domain is not None and not joint.domain[0] <= joint.nominal <= joint.domain[1]:
+        yield f"joint {joint.name!r}: its nominal value {joint.nominal:g} is outside its domain {joint.domain}"
+    if joint.pitch != 0 and joint.limit_range is None:
+        yield f"joint {joint.name!r} carries a pitch: it needs a limit_range"
+    earlier = mechanism.joints[: mechanism.joints.index(joint)]
+    motors = {other.motor for other in earlier} | _parameters(mechanism)
+    yield from _unknown(f"coupling of joint {joint.name!r}", joint.coupling, motors, "the motor of an earlier joint")
+    yield from _unknown(f"pitch of joint {joint.name!r}", joint.pitch, _parameters(mechanism), "a parameter")
+
+
+def _periods(mechanism: Mechanism) -> Iterator[str]:
+    if mechanism.periods is None:
+        return
+    turning = [j.name for j in mechanism.joints if j.multi_turn]
+    for name in mechanism.periods:
+        if name not in turning:
+            yield f"periods names {name!r}, which is no multi-turn joint of this mechanism"
+    if sorted(mechanism.periods) != sorted(turning):
+        yield f"periods must name every multi-turn joint once: {', '.join(turning)}"
+
+
+def _shape(mechanism: Mechanism) -> Iterator[str]:
+    if (mechanism.chain is None) == (not mechanism.equations):
+        yield "the mechanism needs either a chain or closure equations"
+    if mechanism.task.position not in ("xy", "xyz") and not mechanism.is_orientation:
+        yield f"the task commands {mechanism.task.position!r}: it must be 'xy', 'xyz', or '' of a chain that only turns"
+    cones = [cone for rod in mechanism.rods for cone in (rod.base_cone, rod.plate_cone) if cone is not None]
+    if cones and not mechanism.home:
+        yield "a cone of a rod's joint is about the rod at the home pose, and the mechanism has none"
+    for cone in cones:
+        yield from _unknown("a cone of a rod's joint", cone, _parameters(mechanism), "a parameter of this mechanism")
+    used = {s for _, e in _equations(mechanism) for s in e.free_symbols}
+    for joint in mechanism.joints:
+        if joint.symbol not in used:
+            yield f"joint {joint.name!r} occurs nowhere in the closure"
+
+
+def _equations(mechanism: Mechanism) -> Expressions:
+    if mechanism.chain is not None:
+        return tuple(("chain", factor.amount) for factor in mechanism.chain.factors)
+    return tuple(("closure", sp.sympify(equation)) for equation in mechanism.equations)
+
+
+def _symbols(mechanism: Mechanism) -> Iterator[str]:
+    joints = {j.symbol for j in mechanism.joints}
+    known = joints | _parameters(mechanism)
+    if mechanism.chain is None:
+        known |= {quantity.symbol for quantity in (X, Y, Z)}
+    if mechanism.task.turning is Turning.FULL:
+        known |= set(ROTATION)
+    named = [
+        *_equations(mechanism),
+        *((f"branch {b.name!r}", b.indicator) for b in mechanism.branches),
+        *(("positive", sp.sympify(e)) for e in mechanism.positive),
+        *((f"limited quantity {q.name!r}", q.value) for q in mechanism.limited),
+        *((f"bar {bar.name!r}", e) for bar in mechanism.bars for e in (*bar.base, *bar.plate, bar.length)),
+    ]
+    for place, expression in named:
+        yield from _unknown(place, expression, known, "a joint or a parameter of this mechanism")
+    for branch in mechanism.branches:
+        if not branch.is_crossing and not joints & branch.indicator.free_symbols:
+            yield f"branch {branch.name!r}: its indicator {branch.indicator} depends on no joint"
+
+
+def _constraints(mechanism: Mechanism) -> Iterator[str]:
+    values: dict[str, sp.Expr] = {p.name: sp.Float(p.nominal) for p in mechanism.parameters} | {DEGREE.name: sp.pi / 180}
+
+    def at_nominal(expression: sp.Basic) -> sp.Basic:
+        return expression.subs({s: values.get(s.name, sp.Integer(0)) for s in expression.free_symbols})
+
+    for constraint in mechanism.constraints:
+        for step in constraint.steps:
+            values[step.name.name] = sp.Float(at_nominal(step.value))
+        strange = sorted(s.name for s in constraint.condition.free_symbols if s.name not in values)
+        if strange:
+            yield f"constraint {constraint.message!r} reads {strange[0]!r}, which is no parameter of this mechanism"
+        if at_nominal(constraint.condition) != sp.true:
+            yield f"the nominal parameters break the constraint {constraint.message!r}"
+
+
+def _parameters(mechanism: Mechanism) -> set[sp.Basic]:
+    return {p.symbol for p in mechanism.parameters}
+
+
+def _unknown(place: str, expression: sp.Basic, known: Iterable[sp.Basic], wanted: str) -> Iterator[str]:
+    strange = expression.free_symbols - set(known) - {DEGREE}
+    for symbol in sorted(strange, key=str):
+        yield f"{place} reads {str(symbol)!r}, which is not {wanted}"

@@ -1,0 +1,1 @@
+"""Objects of a Structured Text project, as text and as PLCopenXML."""

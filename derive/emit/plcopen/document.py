@@ -1,0 +1,132 @@
+"""PLCopenXML as CODESYS V3.5 reads it: objects with their text, a typed copy of what they declare, and folders.
+
+CODESYS takes the plain text of a declaration, which keeps comments and pragmas; the typed copy is what other tools
+read. Everything that the standard has no element for stands in `addData`, in the elements CODESYS itself writes.
+"""
+
+from __future__ import annotations
+
+import uuid
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping, Sequence
+
+from derive.emit.plcopen.declaration import declaration_of
+from derive.emit.plcopen.interface import add_attributes, add_base_type, add_data, add_interface, add_text
+from derive.emit.plcopen.objects import Object
+
+Folders = Mapping[str, Sequence[Object]]
+"""The objects by the folder they stand in."""
+
+_NAMESPACE = "http://www.plcopen.org/xml/tc6_0200"
+_IDENTIFIERS = uuid.uuid5(uuid.NAMESPACE_DNS, "softkin")
+_DATE = "2000-01-01T00:00:00"
+"""The schema wants a date. It is always the same one, so that the same objects give the same file."""
+_GETTER = "VAR\nEND_VAR"
+"""The declaration of a getter, as CODESYS itself makes it."""
+_POU_TYPES = {"FUNCTION": "function", "FUNCTION_BLOCK": "functionBlock", "PROGRAM": "program"}
+
+
+def document(title: str, remark: str, folders: Folders) -> str:
+    """A file with these objects, in folders below one that bears the title."""
+    root = ET.Element("project", xmlns=_NAMESPACE)
+    _headers(root, title, remark)
+    objects = [one for inside in folders.values() for one in inside]
+    types = ET.SubElement(root, "types")
+    data_types, pous = ET.SubElement(types, "dataTypes"), ET.SubElement(types, "pous")
+    for one in objects:
+        if one.kind == "TYPE":
+            _data_type(data_types, one)
+        else:
+            _pou(pous, one)
+    ET.SubElement(ET.SubElement(root, "instances"), "configurations")
+    structure = ET.SubElement(add_data(root, "projectstructure", "discard"), "ProjectStructure")
+    _structure(ET.SubElement(structure, "Folder", Name=title), folders)
+    _indent(root)
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _indent(root: ET.Element) -> None:
+    """Lay out the file: an element a line, but a variable on one."""
+    ET.indent(root)
+    for variable in root.iter("variable"):
+        for element in variable.iter():
+            if len(element):
+                element.text = None
+            for inner in element:
+                inner.tail = None
+
+
+def _headers(root: ET.Element, title: str, remark: str) -> None:
+    ET.SubElement(root, "fileHeader", companyName="", productName="Softkin", productVersion="", creationDateTime=_DATE)
+    content = ET.SubElement(root, "contentHeader", name=title, modificationDateTime=_DATE)
+    ET.SubElement(content, "Comment").text = remark
+    coordinates = ET.SubElement(content, "coordinateInfo")
+    for language in ("fbd", "ld", "sfc"):
+        ET.SubElement(ET.SubElement(coordinates, language), "scaling", x="1", y="1")
+    ET.SubElement(add_data(content, "projectinformation"), "ProjectInformation")
+
+
+def _data_type(parent: ET.Element, one: Object) -> None:
+    element = ET.SubElement(parent, "dataType", name=one.name)
+    declared = declaration_of(one.declaration)
+    add_base_type(ET.SubElement(element, "baseType"), declared)
+    add_attributes(element, declared.attributes)
+    _text_and_identifier(element, one)
+
+
+def _pou(parent: ET.Element, one: Object) -> None:
+    element = ET.SubElement(parent, "pou", name=one.name, pouType=_POU_TYPES[one.kind])
+    add_interface(element, declaration_of(one.declaration))
+    _body(element, one)
+    for member in one.members:
+        if member.kind == "METHOD":
+            _method(add_data(element, "method"), member, one)
+    for member in one.members:
+        if member.kind == "PROPERTY":
+            _property(add_data(element, "property"), member, one)
+    _text_and_identifier(element, one)
+
+
+def _method(parent: ET.Element, one: Object, owner: Object) -> None:
+    element = ET.SubElement(parent, "Method", name=one.name, ObjectId=_identifier(owner.name, one.name))
+    interface = add_interface(element, declaration_of(one.declaration))
+    if f"METHOD PRIVATE {one.name}" in one.declaration:
+        ET.SubElement(add_data(interface, "accessmodifiers"), "AccessModifiers", Private="true")
+    _body(element, one)
+    add_text(ET.SubElement(element, "InterfaceAsPlainText"), one.declaration)
+    ET.SubElement(element, "addData")
+
+
+def _property(parent: ET.Element, one: Object, owner: Object) -> None:
+    element = ET.SubElement(parent, "Property", name=one.name, ObjectId=_identifier(owner.name, one.name))
+    add_interface(element, declaration_of(one.declaration))
+    (getter,) = one.members
+    accessor = ET.SubElement(element, "GetAccessor")
+    ET.SubElement(accessor, "interface")
+    _body(accessor, getter)
+    for inside, text in ((accessor, getter.declaration or _GETTER), (element, one.declaration)):
+        add_text(ET.SubElement(inside, "InterfaceAsPlainText"), text)
+        ET.SubElement(inside, "addData")
+
+
+def _body(parent: ET.Element, one: Object) -> None:
+    add_text(ET.SubElement(ET.SubElement(parent, "body"), "ST"), one.implementation)
+
+
+def _text_and_identifier(element: ET.Element, one: Object) -> None:
+    add_text(ET.SubElement(add_data(element, "interfaceasplaintext"), "InterfaceAsPlainText"), one.declaration)
+    ET.SubElement(add_data(element, "objectid", "discard"), "ObjectId").text = _identifier(one.name)
+
+
+def _structure(root: ET.Element, folders: Folders) -> None:
+    for name, objects in folders.items():
+        folder = ET.SubElement(root, "Folder", Name=name)
+        for one in objects:
+            entry = ET.SubElement(folder, "Object", Name=one.name, ObjectId=_identifier(one.name))
+            for member in one.members:  # a tool of another vendor imports the members that are listed here, and no other
+                ET.SubElement(entry, "Object", Name=member.name, ObjectId=_identifier(one.name, member.name))
+
+
+def _identifier(*path: str) -> str:
+    """The identifier of an object: made from its name, so that it is the same in every file."""
+    return str(uuid.uuid5(_IDENTIFIERS, ".".join(path)))

@@ -1,0 +1,81 @@
+"""Calls of programs that several programs share: values go in and come out as one tuple, in the order of the program."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derive.emit.python.layout import fold, taken_apart, tuple_of
+from derive.emit.python.printer import ScalarPrinter, spelled
+from derive.ir.program import (
+    Call,
+    FindRoot,
+)
+from derive.ir.symbols import (
+    PLACE,
+)
+
+GIVEN, FOUND = "given", "found"
+"""The argument of a shared program, and what it answered: its values or, on plain numbers, the status of its refusal."""
+
+
+def scalar_lines(call: Call, printer: ScalarPrinter, refused: str = f"return {FOUND}") -> list[str]:
+    """Call, hand a refusal on, and take the values apart."""
+    head = fold(f"{FOUND} = self._{call.program.name}({_values(call, printer)})")
+    return [*_note(call), *head, f"if isinstance({FOUND}, Status):", f"    {refused}", *_taken(call, FOUND)]
+
+
+def array_lines(call: Call, printer: ScalarPrinter) -> list[str]:
+    """The same on arrays: the shared program writes the statuses of its refusals."""
+    head = fold(f"{FOUND} = self.{call.program.name}({_values(call, printer)}, status)")
+    return [*_note(call), *head, *_taken(call, FOUND)]
+
+
+def scalar_search(search: FindRoot, printer: ScalarPrinter) -> list[str]:
+    """The root of a trial on plain numbers."""
+    return _found(search, _looked_for(search, "nearest_root", ("self._", ""), printer))
+
+
+def array_search(search: FindRoot, printer: ScalarPrinter) -> list[str]:
+    """The same on arrays, for the rows that nothing has refused."""
+    return _found(search, _looked_for(search, "nearest_root", ("self.", "status, "), printer))
+
+
+def every_root(search: FindRoot, printer: ScalarPrinter) -> list[str]:
+    """All roots of a trial on plain numbers."""
+    return fold(f"return {_looked_for(search, 'every_root', ('self._', ''), printer)}")
+
+
+def _found(search: FindRoot, text: str) -> list[str]:
+    return [*_note(search), *fold(f"{FOUND} = {text}"), *taken_apart([spelled(n.name) for n in search.names], FOUND)]
+
+
+def _looked_for(search: FindRoot, function: str, spelling: tuple[str, str], printer: ScalarPrinter) -> str:
+    prefix, status = spelling
+    programs = ", ".join(f"{prefix}{p.name}" for p in (search.trial, search.finish))
+    given = ", ".join(tuple_of([_given(s) for s in search.given(p)]) for p in (search.trial, search.finish))
+    values = f"{printer.print(search.start)}, {printer.print(search.wanted)}, {status}{given}, {len(search.names)}"
+    scan = "" if status else f", self._array_programs().{search.trial.name}"
+    return f"{function}({programs}, {values}{scan})"
+
+
+def _given(name: sp.Symbol) -> str:
+    """A value, or the name of a part of the place, which the search puts in."""
+    return f'"{name.name}"' if name in PLACE else spelled(name.name)
+
+
+def _values(call: Call, printer: ScalarPrinter) -> str:
+    return f"({''.join(f'{printer.print(value)}, ' for value in call.arguments).rstrip()})"
+
+
+def _taken(call: Call, source: str) -> list[str]:
+    """The values that are read, by their names; every other one is `_`."""
+    targets = [spelled(o.name) if o.name in {name.name for name in call.names} else "_" for o in call.program.outputs]
+    last = max((k for k, target in enumerate(targets) if target != "_"), default=-1)
+    if last < 0:
+        return []
+    targets = [*targets[: last + 1], *(["*_"] if last + 1 < len(targets) else [])]
+    return taken_apart(targets, source)
+
+
+def _note(call: Call | FindRoot) -> list[str]:
+    return [f"# {call.note}"] if call.note else []

@@ -1,0 +1,106 @@
+"""What a generated class says about itself: its axes, parameters and configuration bytes, as constructor calls."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from derive.description.mechanism import Mechanism
+from derive.emit.python.layout import fold
+from derive.kinematics.kinematics import Kinematics
+from derive.report.cost import Cost, costs_of
+
+
+def class_name(name: str, better: str | None) -> str:
+    """`Kin_Scara4_ZCcoupled_Type1` → `Scara4ZCcoupledType1`."""
+    return better or "".join(word[:1].upper() + word[1:] for word in _short(name).split("_"))
+
+
+def module_name(name: str) -> str:
+    """`Kin_Scara4_ZCcoupled_Type1` → `scara4_zccoupled_type1`."""
+    return _short(name).lower()
+
+
+def role(mechanism: Mechanism) -> str:
+    """What a mechanism is in a coupling."""
+    return "position" if mechanism.is_position else "orientation" if mechanism.is_orientation else "complete"
+
+
+def axes(kin: Kinematics) -> list[str]:
+    """The axes of the controller."""
+    return _tuple(
+        _call(
+            "Axis", name=j.name, kind=j.kind.value, unit="deg" if j.is_angle else "u",
+            meaning=j.meaning, multi_turn=j.multi_turn,
+        )
+        for j in kin.mechanism.joints
+    )  # fmt: skip
+
+
+def parameters(kin: Kinematics) -> list[str]:
+    """The keywords of the class."""
+    return _tuple(
+        _call(
+            "Parameter", name=p.name, kind=p.role.value, unit=p.unit, meaning=p.meaning,
+            low=p.low, high=p.high, low_is_open=p.low_open, default=p.default,
+        )
+        for p in kin.parameters
+    )  # fmt: skip
+
+
+def configuration(kin: Kinematics) -> list[str]:
+    """The bytes: branches first, then periods."""
+    branches = [_call("ConfigurationByte", name=b.name, kind="branch", branches=b.names, default=1) for b in kin.branches]
+    periods = [_call("ConfigurationByte", name=j.name, kind="period", branches=(), default=0) for j in kin.period_joints]
+    return _tuple([*branches, *periods])
+
+
+def costs(kin: Kinematics) -> list[str]:
+    """What forward and inverse kinematics cost, a line each, and the bounds of iterations."""
+    found = costs_of(kin)
+    rows = [f"forward: {_operations(found.forward)}", f"inverse: {_operations(found.inverse)}"]
+    if kin.branches:
+        rows.append(f"inverse, all {2 ** len(kin.branches)} branches open: {_operations(found.automatic)}")
+    return [*rows, *(f"{b.note}: at most {b.limit} passes, all of which are counted" for b in found.bounds)]
+
+
+def _operations(cost: Cost) -> str:
+    return (
+        f"{cost.additions} additions, {cost.multiplications} multiplications, {cost.divisions} divisions, "
+        f"{cost.roots} square roots, {cost.trigonometric} sines"
+    )
+
+
+def default_configuration(kin: Kinematics) -> str:
+    """Branch 1 everywhere, every period open."""
+    return literal((1,) * len(kin.branches) + (0,) * len(kin.period_joints))
+
+
+def indices(kin: Kinematics, names: Sequence[str]) -> str:
+    """Which axes are meant, by index."""
+    order = [j.name for j in kin.mechanism.joints]
+    return literal(tuple(order.index(name) for name in names))
+
+
+def literal(value: object) -> str:
+    """A value as Python text, with double quotes."""
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+        return f'"{escaped}"'
+    if isinstance(value, tuple):
+        return f"({', '.join(map(literal, value))}{',' if len(value) == 1 else ''})"
+    return repr(value)
+
+
+def _short(name: str) -> str:
+    """Without the prefix, unless what is left is no name: `Kin_5Axes`."""
+    short = name.removeprefix("Kin_")
+    return short if short.isidentifier() else name
+
+
+def _call(constructor: str, **values: object) -> str:
+    return f"{constructor}({', '.join(f'{key}={literal(value)}' for key, value in values.items())})"
+
+
+def _tuple(entries: Iterable[str]) -> list[str]:
+    parts = [line for entry in entries for line in fold(f"{entry},", 4)]
+    return ["(", *parts, ")"] if parts else ["()"]

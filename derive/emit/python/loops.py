@@ -1,0 +1,85 @@
+"""Systems of linear equations and iterations as Python: the same text on plain numbers and on arrays, but for the end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from derive.emit.python.layout import fold, packed
+from derive.emit.python.printer import ScalarPrinter, spelled
+from derive.ir.program import Iterate, Solve
+
+
+def solve_lines(system: Solve, printer: ScalarPrinter) -> list[str]:
+    """`determinant, x, y = solve(matrix, right)`, matrices by rows."""
+    targets = [spelled(system.determinant.name) if system.determinant is not None else "_", *_names(system.names)]
+    head = f"{', '.join(targets)} = solve("
+    lines = [head] if len(head) <= 110 else ["(", *_indented(packed([f"{t}," for t in targets])), ") = solve("]
+    if len(targets) == 1:
+        lines = [f"({targets[0]},) = solve("]
+    note = [f"# {system.note}"] if system.note else []
+    return [*note, *lines, *_matrix(system.matrix, system.size, printer), *_matrix(system.right, system.columns, printer), ")"]
+
+
+def scalar_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
+    """The start, and the beginning of the loop."""
+    return _head(loop, ", ".join(printer.print(value) for value in loop.start))
+
+
+def array_head(loop: Iterate, printer: ScalarPrinter) -> list[str]:
+    """The same; the start may be one for all rows."""
+    return _head(loop, f"initial({', '.join(printer.print(value) for value in loop.start)})")
+
+
+def _head(loop: Iterate, start: str) -> list[str]:
+    note = [f"# {loop.note}"] if loop.note else []
+    return [*note, *fold(f"{', '.join(_names(loop.state))} = {start}"), f"for _ in range({loop.limit}):"]
+
+
+def scalar_end(loop: Iterate, done: str, refusal: str, printer: ScalarPrinter) -> list[str]:
+    """Leave the loop, or go on; a loop that was never left refuses."""
+    return [
+        *_indented([*fold(f"if ({done}):" if len(done) > 90 else f"if {done}:"), "    break"]),
+        *_indented(_assignments(loop, printer)),
+        "else:",
+        f"    {refusal}",
+    ]
+
+
+def array_end(loop: Iterate, printer: ScalarPrinter) -> list[str]:
+    """Leave the loop when every row is done; the rows that are done keep their state while the others go on."""
+    state = ", ".join(_names(loop.state))
+    following = [f"{printer.print(value)}," for value in loop.following]
+    return [
+        *_indented([*fold(f"done = {printer.print(loop.done)}"), "if settled(done, status):", "    break"]),
+        *_indented([f"{state} = advanced(", "    done,", f"    ({state}),", "    (", *_indented(following, 2), "    ),", ")"]),
+        f"require(status, done, Status.{loop.otherwise.name})",
+    ]
+
+
+def _assignments(loop: Iterate, printer: ScalarPrinter) -> list[str]:
+    return [
+        line
+        for name, value in zip(_names(loop.state), loop.following, strict=True)
+        for line in fold(f"{name} = {printer.print(value)}")
+    ]
+
+
+def _names(symbols: Sequence[sp.Symbol]) -> list[str]:
+    return [spelled(symbol.name) for symbol in symbols]
+
+
+def _matrix(entries: Sequence[sp.Expr], width: int, printer: ScalarPrinter) -> list[str]:
+    if not entries:
+        return ["    (),"]
+    rows = [entries[i : i + width] for i in range(0, len(entries), width)]
+    texts = [f"({', '.join(map(printer.print, row))}{',' if width == 1 else ''})," for row in rows]
+    whole = f"({' '.join(texts).removesuffix(',')}),"
+    if len(whole) <= 100:
+        return [f"    {whole}"]
+    return ["    (", *(line for text in texts for line in fold(text, 8)), "    ),"]
+
+
+def _indented(lines: Sequence[str], steps: int = 1) -> list[str]:
+    return [" " * (4 * steps) + line for line in lines]

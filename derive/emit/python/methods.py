@@ -1,0 +1,148 @@
+"""Which programs become which methods: the arguments they unpack and the shape of what they return."""
+
+from __future__ import annotations
+
+from derive.emit.python.calls import GIVEN
+from derive.emit.python.program import Argument, Method, Shape
+from derive.kinematics.kinematics import Kinematics
+
+POSITION: tuple[Shape, ...] = ("x", "y", "z")
+ROTATION: tuple[Shape, ...] = tuple(tuple(f"r{row}{column}" for column in "123") for row in "123")
+OFFSET: tuple[Shape, ...] = ("point_x", "point_y", "point_z")
+IMAGE: tuple[Shape, ...] = (
+    tuple(tuple(f"zero_r{row}{column}" for column in "123") for row in "123"),
+    ("rot_x", "rot_y", "rot_z"),
+    ("u_x", "u_y", "u_z"),
+)
+ROTATION_ARGUMENT = Argument("rotation", "Rotation", ROTATION)
+_AXES = tuple(Argument(name, "Vector", tuple(f"{name}_{c}" for c in "xyz")) for name in ("flange_axis", "base_axis"))
+
+
+def methods(kin: Kinematics) -> list[Method]:
+    """The methods of the generated class that are programs, in the order of their use."""
+    axes = _axes(kin)
+    axis_values = axes.shape
+    measures = _measures(kin)
+    rows = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i, _ in enumerate(kin.rows, 1))
+    margins = tuple(m.name for m in kin.margins)
+    found = [
+        *shared(kin),
+        *every_root(kin),
+        *forwards(kin),
+        Method("orientation", "The rotation of the frame.", kin.orientation, (axes,), "Rotation", ROTATION),
+        branch(kin),
+        limits(kin),
+        Method("singularity", "The margins, each zero at its singularity.", kin.singularity, (axes,), "Reals", margins),
+        Method("jacobian", "The Jacobian by rows, per radian.", kin.jacobian, (axes,), "Matrix", rows),
+        Method("image", "The orientations of the flange.", kin.image, (), "Image", IMAGE),
+    ]
+    if kin.twist is not None:
+        text = "The twist of the frame by rows, per radian."
+        entries = tuple(tuple(f"j{i}{k}" for k, _ in enumerate(axis_values, 1)) for i in range(1, 7))
+        found.append(Method("twist", text, kin.twist, (axes,), "Matrix", entries))
+    found += [*_compatible(kin), *carried(kin), *_total_image(kin)]
+    if kin.projection is not None and kin.chooses_twist:
+        text = "The nearest rotation that the flange can have."
+        found.append(Method("projection", text, kin.projection, (ROTATION_ARGUMENT,), "Rotation", ROTATION))
+    offset = Argument("offset", "Vector", OFFSET)
+    if kin.offset_branch is not None:
+        text = "The axes of one branch for a point off the flange."
+        arguments = (Argument("point", "Vector", POSITION), offset, *_choice(kin))
+        found.append(Method("offset_branch", text, kin.offset_branch, arguments, "Reals", axis_values))
+    if kin.offset_configuration is not None:
+        text = "The signed margin of every branch for a point off the flange."
+        found.append(Method("offset_measures", text, kin.offset_configuration, (axes, offset), "Reals", measures))
+    return found
+
+
+def shared(kin: Kinematics) -> list[Method]:
+    """The programs that others call: arguments and results are tuples of their names."""
+    constants = {o.name for o in kin.setup.outputs}
+    found: list[Method] = []
+    for program in kin.shared:
+        given = Argument(GIVEN, "Reals", tuple(s.name for s in program.inputs if s.name not in constants))
+        outputs = tuple(o.name for o in program.outputs)
+        found.append(Method(program.name, f"{program.summary}.", program, (given,), "Reals", outputs, is_shared=True))
+    return found
+
+
+def every_root(kin: Kinematics) -> list[Method]:
+    """What it takes to find all roots of a search: what it is given, and axes of the joints that it finds."""
+    if kin.search_given is None or kin.from_joints is None:
+        return []
+    pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
+    joints = Argument("joints", "Reals", tuple(j.symbol.name for j in kin.mechanism.joints))
+    given = tuple(o.name for o in kin.search_given.outputs)
+    return [
+        Method("search_given", "What the search is given.", kin.search_given, (*pose, *_choice(kin)), "Reals", given),
+        Method("from_joints", "The axes of joints.", kin.from_joints, (joints, *_choice(kin)[1:]), "Reals", _axes(kin).shape),
+    ]
+
+
+def forward(kin: Kinematics) -> Method:
+    """Forward kinematics."""
+    result = (POSITION, ROTATION, _measures(kin))
+    text = "Position, rotation and the signed margin of every branch."
+    return Method("forward", text, kin.forward, (_axes(kin),), "Pose", result)
+
+
+def forwards(kin: Kinematics) -> list[Method]:
+    """Forward kinematics, and from a given start where it iterates."""
+    if kin.forward_from is None:
+        return [forward(kin)]
+    start = (
+        Argument("start_position", "Vector", tuple(f"start_{c}" for c in "xyz")),
+        Argument("start_rotation", "Rotation", tuple(tuple(f"start_r{row}{column}" for column in "123") for row in "123")),
+    )
+    text = "The same, found from a given start."
+    result = (POSITION, ROTATION, _measures(kin))
+    return [forward(kin), Method("forward_from", text, kin.forward_from, (_axes(kin), *start), "Pose", result)]
+
+
+def branch(kin: Kinematics) -> Method:
+    """Inverse kinematics on one branch."""
+    pose = (Argument("position", "Vector", POSITION), Argument("rotation", "Rotation", ROTATION))
+    text = "The axes of one branch, periods included, limits not."
+    return Method("branch", text, kin.branch, (*pose, *_choice(kin)), "Reals", _axes(kin).shape)
+
+
+def carried(kin: Kinematics) -> list[Method]:
+    """Where the end point of an orientation kinematics is, on a flange that turns."""
+    if kin.carried is None:
+        return []
+    text = "From a flange that turns to the end point."
+    return [Method("carried", text, kin.carried, (ROTATION_ARGUMENT, *_AXES), "Vector", POSITION)]
+
+
+def _compatible(kin: Kinematics) -> list[Method]:
+    if kin.compatible is None:
+        return []
+    return [Method("compatible", "Whether a flange that turns can carry this.", kin.compatible, _AXES[:1], "", ())]
+
+
+def _total_image(kin: Kinematics) -> list[Method]:
+    if kin.total_image is None:
+        return []
+    text = "The orientations on a flange, and how far the two axes are apart."
+    return [Method("total_image", text, kin.total_image, (ROTATION_ARGUMENT, *_AXES), "TotalImage", (*IMAGE, "apart"))]
+
+
+def limits(kin: Kinematics) -> Method:
+    """The test of the limits."""
+    return Method("limits", "Whether the axes are inside their limits.", kin.limits, (_axes(kin),), "", ())
+
+
+def _axes(kin: Kinematics) -> Argument:
+    return Argument("axes", "Reals", tuple(j.axis.name for j in kin.mechanism.joints))
+
+
+def _measures(kin: Kinematics) -> tuple[Shape, ...]:
+    return tuple(f"branch_{b.name}" for b in kin.branches)
+
+
+def _choice(kin: Kinematics) -> tuple[Argument, ...]:
+    return (
+        Argument("signs", "Reals", tuple(f"sigma_{b.name}" for b in kin.branches)),
+        Argument("turns", "Reals", tuple(j.turn.name for j in kin.period_joints)),
+        Argument("reference", "Reals", tuple(j.reference.name for j in kin.mechanism.joints)),
+    )

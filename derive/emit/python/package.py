@@ -1,0 +1,280 @@
+"""Python: the package `softkin`, its runtime and one module a mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from textwrap import wrap
+
+from jinja2 import Environment
+
+from derive.emit.language import GENERATED, environment
+from derive.emit.python import entries, setup
+from derive.emit.python.calls import every_root
+from derive.emit.python.diagnosis import diagnosis
+from derive.emit.python.layout import WIDTH, fold
+from derive.emit.python.methods import branch, carried, forwards, limits, methods, shared
+from derive.emit.python.printer import ARRAY_NAMES, ScalarPrinter, array_helpers_in, literal, primitives_in
+from derive.emit.python.program import Method, array_body, functions, has_loop, has_search, scalar_body, unpacked
+from derive.emit.python.rotation import rotation_functions
+from derive.emit.python.unrolled import array_lines, array_method, can_be_unrolled, has_folds, unrolled
+from derive.ir import roots
+from derive.ir.constants import (
+    EDGE,
+    EXACT_ROTATION,
+    FINISHED,
+    FREE_ANGLE,
+    HELD,
+    LARGEST,
+    ONE_TURN,
+    PIVOT,
+    ROTATION,
+    SINGULAR,
+    SOLVABLE,
+    TIE,
+    TRIALS,
+)
+from derive.ir.program import (
+    FindRoot,
+    Status,
+)
+from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.parameters import chooses_by_lengths
+from derive.report.reasons import NO_MEANING
+
+name = "python"
+_OF_THE_SEARCH = tuple("ASIDE CELLS CLOSING FINEST FLAT GAP NARROW NEAR_ZERO RESERVE RIM SEAM TOUCHED TURNED VANISHING".split())
+
+_FIXED = (
+    "pyproject.toml",
+    "softkin/_array.py",
+    "softkin/_array_coupled.py",
+    "softkin/_array_programs/__init__.py",
+    "softkin/_array_rotation.py",
+    "softkin/_batch.py",
+    "softkin/_columns.py",
+    "softkin/_configuration.py",
+    "softkin/_core.py",
+    "softkin/_coupled.py",
+    "softkin/_diagnosis/__init__.py",
+    "softkin/_input.py",
+    "softkin/_offset.py",
+    "softkin/_orientation.py",
+    "softkin/_rotation.py",
+    "softkin/_root.py",
+    "softkin/_roots.py",
+    "softkin/_scalar.py",
+    "softkin/_search.py",
+    "softkin/_solutions.py",
+    "softkin/_start.py",
+    "softkin/_table.py",
+    "softkin/_twist.py",
+    "softkin/_types.py",
+    "softkin/_unrolled/__init__.py",
+    "softkin/_vectors.py",
+    "softkin/py.typed",
+)
+"""Files that are the same whatever the mechanisms are."""
+_INDEXED = ("README.md", "softkin/__init__.py")
+"""Files that list the mechanisms."""
+_EXPORTS = (
+    "Axis", "ConfigurationByte", "Coupled", "Diagnosis", "Frame", "KinematicsError", "Mechanism", "OrientationImage",
+    "Parameter", "Singularity", "Solution", "Status", "catalogue",
+)  # fmt: skip
+_ARRAY_TYPES = ("Codes", "Reals", "Rotation", "Vector", "passed", "require")
+_ARRAY_HELPERS = ("Real", "atan2", "degrees", "elsewhere", "refused", "root", "sqrt")
+"""What programs on arrays call or name, depending on how an expression is spelled."""
+_CHUNK = 8192
+"""Rows of a batch at a time: 64 KiB an array."""
+_MEANINGS = {
+    Status.OK: "no error",
+    Status.NOT_INITIALIZED: "a parameter is not allowed",
+    Status.BAD_INPUT: "numbers must be finite and at most 1e9 in size, and a rotation must be one",
+    Status.UNREACHABLE: "out of reach or beyond a limit",
+    Status.IMPOSSIBLE: "the mechanism cannot be assembled there, or a joint is undetermined",
+    Status.INVALID_COUPLING: "this pair of position and orientation kinematics is impossible",
+}
+
+
+def render(kinematics: Sequence[Kinematics]) -> dict[str, str]:
+    """All files of the package: path → text."""
+    templates = _templates()
+    index = [_index(kin) for kin in kinematics]
+    files = {path: templates.get_template(f"{path}.j2").render() for path in _FIXED}
+    index.sort(key=lambda entry: entry["module"])
+    exports = _sorted({*_EXPORTS, *(entry["class_name"] for entry in index)})
+    files |= {path: templates.get_template(f"{path}.j2").render(index=index, exports=exports) for path in _INDEXED}
+    for kin in kinematics:
+        files |= _mechanism(templates, kin)
+    return files
+
+
+def _templates() -> Environment:
+    templates = environment(name)
+    templates.filters |= {"fold": fold, "paragraph": _paragraph, "literal": entries.literal}
+    templates.globals |= {
+        "generated": GENERATED,
+        "statuses": [{"name": s.name, "softmotion": s.value, "meaning": _MEANINGS[s]} for s in Status],
+        "chunk": _CHUNK,
+        "edge": literal(float(EDGE)),
+        "held": literal(float(HELD)),
+        "free_angle": literal(float(FREE_ANGLE)),
+        "largest": literal(float(LARGEST)),
+        "rotation": rotation_functions(),
+        "largest_error": literal(float(ROTATION)),
+        "search_constants": {name: literal(getattr(roots, name)) for name in _OF_THE_SEARCH},
+        "exact": literal(float(EXACT_ROTATION)),
+        "one_turn": literal(int(ONE_TURN)),
+        "pivot": literal(float(PIVOT)),
+        "singular": literal(float(SINGULAR)),
+        "roots": _after_docstring(Path(roots.__file__).read_text()),
+        "trials": TRIALS,
+        "finished": FINISHED,
+        "solvable": literal(float(SOLVABLE)),
+        "tie": literal(float(TIE)),
+        "no_meaning": NO_MEANING,
+    }
+    return templates
+
+
+def _after_docstring(source: str) -> str:
+    """A module without its docstring and its first import."""
+    text = source.split("from __future__ import annotations", 1)[1].strip()
+    return text.replace("from typing import NamedTuple", "from typing import Any, NamedTuple")
+
+
+def _index(kin: Kinematics) -> dict[str, str]:
+    mechanism = kin.mechanism
+    return {
+        "name": mechanism.name,
+        "class_name": entries.class_name(mechanism.name, mechanism.class_name),
+        "module": entries.module_name(mechanism.name),
+        "summary": mechanism.summary,
+    }
+
+
+def _mechanism(templates: Environment, kin: Kinematics) -> dict[str, str]:
+    """The class of a mechanism, and its programs on arrays."""
+    names = _index(kin)
+    scalar = methods(kin)
+    arrays = [*shared(kin), *forwards(kin), branch(kin), limits(kin), *carried(kin)]
+    array_programs = _array_programs(kin)
+    array_types = _ARRAY_TYPES + (("advanced", "initial", "settled") if any(has_loop(m.program) for m in arrays) else ())
+    bodies = [scalar_body(m) for m in scalar]
+    context = {
+        **names,
+        "kin": kin,
+        "mechanism": kin.mechanism,
+        "entries": entries,
+        "setup": setup,
+        "array_programs": array_programs,
+        "bases": _bases(kin),
+        "core_types": sorted({"Image", "Pose", *_core(kin)}),
+        "types": _types(kin, scalar),
+        "primitives": primitives_in(line for body in (*bodies, setup.setup_body(kin)) for line in body),
+        "searches": any(map(has_search, kin.shared)),
+        "is_unrolled": can_be_unrolled(kin),
+        "chooses_by_lengths": chooses_by_lengths(kin.mechanism),
+        "has_folds": has_folds(kin),
+        "margins": tuple(m.name for m in kin.margins),
+        "every_root": _every_root(scalar),
+        "methods": [{"head": _head(m, "_"), "summary": m.summary, "body": b} for m, b in zip(scalar, bodies, strict=True)],
+    }
+    array_methods = [{"head": _array_head(m), "summary": m.summary, "body": array_body(m)} for m in arrays]
+    if can_be_unrolled(kin) and kin.branches:
+        every = array_method(kin)
+        array_methods.append({"head": _every_head(every), "summary": every.summary, "body": array_lines(kin, every)})
+        arrays.append(every)
+    helpers = array_helpers_in((line for m in array_methods for line in m["body"]), _ARRAY_HELPERS)
+    array_context = {
+        **names,
+        "array_programs": array_programs,
+        "imports": _sorted({array_programs, *array_types, *helpers, *_array_functions(arrays)}),
+        "methods": array_methods,
+        "searches": any(map(has_search, kin.shared)),
+        "takes_signs": can_be_unrolled(kin) and kin.branches,
+    }
+    files = {
+        f"softkin/_diagnosis/{names['module']}.py": templates.get_template("diagnosis.py.j2").render({**names, **diagnosis(kin)}),
+        f"softkin/{names['module']}.py": templates.get_template("mechanism.py.j2").render(context),
+        f"softkin/_array_programs/{names['module']}.py": templates.get_template("arrays.py.j2").render(array_context),
+    }
+    if can_be_unrolled(kin):
+        unrolled_text = templates.get_template("unrolled.py.j2").render(**names, unrolled=unrolled(kin))
+        files |= {f"softkin/_unrolled/{names['module']}.py": unrolled_text}
+    return files
+
+
+def _every_root(found: Sequence[Method]) -> list[str]:
+    """The body of the method that finds all roots of a search; empty where there is none."""
+    for method in (m for m in found if has_search(m.program)):
+        (search,) = method.program.body
+        assert isinstance(search, FindRoot)
+        return [*unpacked(method), *every_root(search, ScalarPrinter())]
+    return []
+
+
+def _array_programs(kin: Kinematics) -> str:
+    """What the programs on arrays are, by what they offer."""
+    if kin.mechanism.is_orientation:
+        return "OrientationPrograms"
+    return "Programs" if kin.forward_from is None else "StartedPrograms"
+
+
+def _array_functions(arrays: Sequence[Method]) -> set[str]:
+    return {ARRAY_NAMES.get(f, f) for f in functions(tuple(m.program for m in arrays))} - set(_ARRAY_HELPERS)
+
+
+def _bases(kin: Kinematics) -> dict[str, str]:
+    """The base classes by the module they are in: what the mechanism offers beyond the calls that all have."""
+    found = {"_offset": "OffsetKinematics"} if kin.offset_branch is not None else {}
+    found |= {"_orientation": "OrientationKinematics"} if kin.mechanism.is_orientation else {}
+    found |= {"_search": "SearchedInverse"} if kin.mechanism.search is not None else {}
+    found |= {"_start": "IterativeForward"} if kin.forward_from is not None else {}
+    found |= {"_twist": "TwistChoice"} if kin.chooses_twist else {}
+    return found or {"_core": "Mechanism"}
+
+
+def _core(kin: Kinematics) -> Sequence[str]:
+    """The base class, where it is that of all."""
+    return [base for module, base in _bases(kin).items() if module == "_core"]
+
+
+def _types(kin: Kinematics, used: Sequence[Method]) -> list[str]:
+    kinds = {m.kind for m in used if m.kind} | {a.kind for m in used for a in m.arguments}
+    lean = {"PlainFrame", "Reals", "Rotation", "Vector"} if can_be_unrolled(kin) else set()
+    lean |= {"ConfigurationByte"} if kin.configuration_size else set()
+    lean |= {"Axis"} if kin.mechanism.joints else set()
+    return _sorted(kinds - {"Pose", "Image", "TotalImage"} | {"Diagnosis", "Parameter", "Reals", "Status"} | lean)
+
+
+def _head(method: Method, prefix: str) -> list[str]:
+    arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
+    result = f"{method.kind} | Status" if method.kind else "Status"
+    return fold(f"def {prefix}{method.name}(self{arguments}) -> {result}:", 4)
+
+
+def _array_head(method: Method) -> list[str]:
+    arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
+    if method.is_shared:
+        return fold(f"def {method.name}(self{arguments}, status: Codes) -> {method.kind}:", 4)
+    kind = "tuple[Vector, Rotation, Reals]" if method.kind == "Pose" else method.kind
+    result = f"tuple[{kind}, Codes]" if kind else "Codes"
+    return fold(f"def {method.name}(self{arguments}) -> {result}:", 4)
+
+
+def _every_head(method: Method) -> list[str]:
+    """The unrolled branches are told the signs of the slots, as any other programs, and know them."""
+    arguments = "".join(f", {a.name}: {a.kind}" for a in method.arguments)
+    return fold(f"def {method.name}(self{arguments}, signs: Sequence[Reals]) -> {method.kind}:", 4)
+
+
+def _sorted(found: set[str]) -> list[str]:
+    """Constants, then classes, then functions."""
+    return sorted(found, key=lambda n: (not n.isupper(), n[0].islower(), n))
+
+
+def _paragraph(text: str, indent: int = 0) -> str:
+    """A text in lines of the usual width."""
+    space = " " * indent
+    return "\n".join(wrap(text, WIDTH, initial_indent=space, subsequent_indent=space))

@@ -1,0 +1,135 @@
+"""Expressions as Python: once on plain numbers, once on arrays. The two differ in choice and logic only."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from keyword import iskeyword
+
+import sympy as sp
+
+from derive.emit.expression import ATOM, COMPARE, FUNCTION_KEYS, PRODUCT, ExpressionPrinter
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.primitives import (
+    Atan2,
+    Root,
+    Select,
+)
+from derive.optimize.guards import PositiveRoot
+from derive.optimize.inline import Grouped
+
+TAKEN = frozenset(FUNCTION_KEYS.values()) | {
+    "axes", "position", "rotation", "point", "offset", "signs", "turns", "reference",
+    "self", "k", "status", "absolute", "require", "passed", "solve", "settled", "initial", "advanced", "done",
+    "given", "found", "frame", "arctan2", "sqrt", "elsewhere", "degrees", "refused", "no_offsets",
+}  # fmt: skip
+"""Names that a generated method uses for itself."""
+ARRAY_NAMES = {"abs": "absolute"}
+"""Primitives that are called something else on arrays."""
+
+
+def spelled(name: str) -> str:
+    """The spelling of a name: its own, unless Python or the method around it uses that."""
+    return f"{name}_" if iskeyword(name) or name in TAKEN else name
+
+
+def literal(value: float) -> str:
+    """The literal of a real number: `2.0`, `0.5`, `1e9`, `1e-12`."""
+    if value == 0.0 or 1e-4 <= abs(value) < 1e6:
+        return repr(value)
+    mantissa, _, exponent = f"{value:e}".partition("e")
+    short = f"{mantissa.rstrip('0').rstrip('.')}e{int(exponent)}"
+    return short if float(short) == value else repr(value)
+
+
+def primitives_in(lines: Iterable[str]) -> list[str]:
+    """The primitives and constants that statements use, in alphabetical order."""
+    words = {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", line.partition("#")[0])}
+    return sorted(words & {*FUNCTION_KEYS.values(), "DEGREE", "RADIAN", "arctan2", "solve", "sqrt"} - {"abs", "select"})
+
+
+def array_helpers_in(lines: Iterable[str], helpers: Iterable[str]) -> set[str]:
+    """Those of some functions that statements on arrays call."""
+    return {word for line in lines for word in re.findall(r"[A-Za-z_]\w*", line.partition("#")[0])} & set(helpers)
+
+
+def is_sum_of_squares(value: sp.Expr) -> bool:
+    """Whether a value is no negative number, not even a negative zero."""
+    return value.is_Add and all(term.is_Pow and term.exp == 2 for term in value.args)
+
+
+class ScalarPrinter(ExpressionPrinter):
+    """Plain numbers: a choice is a conditional expression, and only one arm of it is evaluated.
+
+    What is short is written out instead of called, because a call takes longer: the root of a sum of squares or of a name, and
+    the size of a name.
+    Of an angle, zeros lose their signs by adding 0.
+    """
+
+    def __init__(self, *, modulo_turns: bool = False, is_trusted: bool = False) -> None:
+        """modulo_turns: whether -180 degrees are as good as 180, so that the sign of a zero sine does not matter.
+
+        is_trusted: whether there is a direction at all, so that not both are zero; and quotients are products, which are faster.
+        """
+        self.modulo_turns, self.is_trusted = modulo_turns, is_trusted
+
+    def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, PositiveRoot):
+            return f"sqrt({self.print(node.args[0])})", ATOM
+        if isinstance(node, Grouped):
+            return self._spell(node.args[0])
+        if self.is_trusted and node.is_Mul and 1 / DEGREE in node.args:
+            return f"{self._text(node * DEGREE, PRODUCT)}*RADIAN", PRODUCT
+        if isinstance(node, sp.LessThan) and isinstance(node.lhs, sp.Abs) and node.lhs.args[0].is_Symbol and node.rhs.is_Number:
+            bound, value = self.print(node.rhs), self.print(node.lhs.args[0])
+            return f"-{bound} <= {value} <= {bound}", COMPARE
+        if isinstance(node, Select) and isinstance(node.args[1], Root) and node.args[0] == sp.Gt(node.args[1].args[0], 0):
+            condition, (radicand,), otherwise = node.args[0], node.args[1].args, node.args[2]
+            return f"(sqrt({self.print(radicand)}) if {self.print(condition)} else {self.print(otherwise)})", ATOM
+        if isinstance(node, Root):
+            (radicand,) = node.args
+            text = self.print(radicand)
+            if is_sum_of_squares(radicand):
+                return f"sqrt({text})", ATOM
+            if radicand.is_Symbol:
+                return f"(sqrt({text}) if {text} > 0.0 else 0.0)", ATOM
+        return super()._spell(node)
+
+    def name(self, symbol: sp.Symbol) -> str:
+        return symbol.name if symbol.name == "DEGREE" else spelled(symbol.name)
+
+    def number(self, value: float) -> str:
+        return literal(value)
+
+    def call(self, key: str, arguments: Sequence[str]) -> str:
+        if key == "select":
+            condition, first, second = arguments
+            return f"({first} if {condition} else {second})"
+        if key == "atan2":
+            sine, cosine = arguments
+            return f"arctan2({sine}{'' if self.modulo_turns else ' + 0.0'}, {cosine}{'' if self.is_trusted else ' + 0.0'})"
+        return f"{key}({', '.join(arguments)})"
+
+    def logic(self, word: str) -> str:
+        return {"true": "True", "false": "False"}.get(word, word)
+
+
+class ArrayPrinter(ScalarPrinter):
+    """Arrays: a choice evaluates both arms, and conditions are masks."""
+
+    def _spell(self, node: sp.Basic) -> tuple[str, int]:
+        if isinstance(node, Root) and is_sum_of_squares(node.args[0]):
+            return f"sqrt({self.print(node.args[0])})", ATOM
+        if self.modulo_turns and node.is_Mul and len(node.args) == 2 and 1 / DEGREE in node.args:
+            (angle,) = (factor for factor in node.args if factor != 1 / DEGREE)
+            if isinstance(angle, Atan2):
+                return f"degrees({', '.join(map(self.print, angle.args))})", ATOM
+        return ExpressionPrinter._spell(self, node)
+
+    def call(self, key: str, arguments: Sequence[str]) -> str:
+        return f"{ARRAY_NAMES.get(key, key)}({', '.join(arguments)})"
+
+    def logic(self, word: str) -> str:
+        return {"and": "&", "or": "|", "true": "True", "false": "False"}[word]

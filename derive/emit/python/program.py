@@ -1,0 +1,354 @@
+"""A program as the body of a Python method: on plain numbers with early returns, on arrays with masks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+
+import sympy as sp
+from sympy.core.relational import Relational
+
+from derive.emit.expression import FUNCTION_KEYS
+from derive.emit.python import calls as python_calls
+from derive.emit.python.control_flow import array_arm_lines, fixed
+from derive.emit.python.layout import WIDTH, fold, taken_apart, tuple_of
+from derive.emit.python.loops import array_end, array_head, scalar_end, scalar_head, solve_lines
+from derive.emit.python.printer import ArrayPrinter, ScalarPrinter, literal, spelled
+from derive.ir.constants import (
+    DEGREE,
+    EDGE,
+)
+from derive.ir.primitives import (
+    NearestPeriod,
+    Select,
+)
+from derive.ir.program import (
+    Call,
+    FindRoot,
+    Iterate,
+    Let,
+    Program,
+    Require,
+    Solve,
+    Status,
+    expressions,
+)
+from derive.ir.symbols import (
+    PLACE,
+    real,
+    symbols_of,
+)
+from derive.optimize.control_flow import Arms, Item, in_arms, spared
+
+Shape = str | tuple["Shape", ...]
+"""Names, nested as the tuples of the method's arguments and results are."""
+
+_SCALAR, _ARRAY = ScalarPrinter(), ArrayPrinter()
+_MODULO_TURNS, _ARRAY_TURNS = ScalarPrinter(modulo_turns=True), ArrayPrinter(modulo_turns=True)
+
+
+@dataclass(frozen=True)
+class Argument:
+    """An argument of a method: a tuple of the values that the program reads by name."""
+
+    name: str
+    kind: str
+    """Its type: `Axes`, `Vector`, `Rotation`, `Signs`, `Turns`."""
+    shape: tuple[Shape, ...]
+    default: str = ""
+    """What stands for None; empty where there has to be a value."""
+
+    @property
+    def declared(self) -> str:
+        """As it stands in the head of a function."""
+        return f"{self.name}: {self.kind} | None = None" if self.default else f"{self.name}: {self.kind}"
+
+    @property
+    def source(self) -> str:
+        """Its value."""
+        return f"{self.default} if {self.name} is None else {self.name}" if self.default else self.name
+
+
+@dataclass(frozen=True)
+class Method:
+    """A program with its place in the generated class."""
+
+    name: str
+    summary: str
+    program: Program
+    arguments: tuple[Argument, ...]
+    kind: str
+    """The type of the result, where the status is OK; empty where there is none."""
+    result: Shape
+    is_shared: bool = False
+    """Whether other programs call it: then, on arrays, it writes the statuses of its caller."""
+
+
+@dataclass(frozen=True)
+class Refusals:
+    """How a body on plain numbers refuses: it returns what `answer` says for a status."""
+
+    answer: Callable[[Status], str]
+
+    def lines(self, requires: Sequence[Require]) -> list[str]:
+        """Where conditions that refuse alike do not all hold."""
+        head = fold(f"if not ({conjunction(r.condition for r in requires)}):")
+        return [*head, f"    return {self.answer(requires[0].otherwise)}"]
+
+    def of_loop(self, loop: Iterate) -> str:
+        """Where a loop was never left."""
+        return f"return {self.answer(loop.otherwise)}"
+
+    def of_call(self) -> str:
+        """Where a shared program has refused."""
+        return f"return {python_calls.FOUND}"
+
+    def reads(self, require: Require) -> tuple[sp.Expr, ...]:
+        """What a refusal computes: it must be bound whichever way the program went."""
+        return ()
+
+
+_REFUSALS = Refusals(lambda status: f"Status.{status.name}")
+
+
+def scalar_body(method: Method, owner: str = "self._constants", refusals: Refusals = _REFUSALS) -> list[str]:
+    """The body on plain numbers: the first condition that does not hold returns its status."""
+    lines = [*unpacked(method), *_constants(method, owner), *statement_lines(method.program, refusals, _SCALAR)]
+    return [*lines, *fold(f"return {_values(method, _SCALAR) or 'Status.OK'}")]
+
+
+def statement_lines(program: Program, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
+    """The statements of a program on plain numbers."""
+    needed = [e for s in program.body if isinstance(s, Require) for e in refusals.reads(s)]
+    wanted = [*(o.value for o in program.outputs), *needed]
+    return item_lines(spared(in_arms(program.body, wanted), wanted), refusals, printer)
+
+
+def item_lines(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
+    """Statements on plain numbers, choices with their sides."""
+    lines: list[str] = []
+    for item, same in grouped(items):
+        if isinstance(item, Require):
+            lines += _refusing(same, refusals)
+        elif isinstance(item, Iterate):
+            lines += [*scalar_head(item, printer), *_step(item, printer)]
+            lines += scalar_end(item, conjunction([item.done]), refusals.of_loop(item), printer)
+        elif isinstance(item, Call):
+            lines += python_calls.scalar_lines(item, printer, refusals.of_call())
+        elif isinstance(item, FindRoot):
+            lines += python_calls.scalar_search(item, printer)
+        else:
+            lines += _item_lines(item, refusals, printer)
+    return lines
+
+
+def _refusing(requires: Sequence[Require], refusals: Refusals) -> list[str]:
+    return [*_note(requires[0].note), *refusals.lines(requires)]
+
+
+def _item_lines(item: Item, refusals: Refusals, printer: ScalarPrinter) -> list[str]:
+    """A binding, or a choice between two sides that bind the same or refuse."""
+    if isinstance(item, Arms):
+        notes = dict.fromkeys(i.note for i in item.holds if isinstance(i, Let) and i.name in item.names and i.note)
+        head = [*(f"# {note}" for note in notes), *fold(f"if {conjunction([item.condition])}:")]
+        sides = [[_unnoted(i, item.names) for i in side] for side in (item.holds, item.fails)]
+        holds, fails = (_side(side, refusals, printer) for side in sides)
+        return [*head, *holds, "else:", *fails]
+    if isinstance(item, Require):
+        return _refusing([item], refusals)
+    if isinstance(item, Let) and isinstance(item.value, NearestPeriod):
+        return _turn_lines(item, item.value, printer)
+    assert isinstance(item, Let | Solve)
+    return binding_lines(item, printer)
+
+
+def _unnoted(item: Item, names: Sequence[sp.Symbol]) -> Item:
+    """The statement without its note, if that stands before the choice that gives it."""
+    return replace(item, note="") if isinstance(item, Let) and item.name in names else item
+
+
+def _side(items: Sequence[Item], refusals: Refusals, printer: ScalarPrinter) -> list[str]:
+    return [f"    {line}" for item in items for line in _item_lines(item, refusals, printer)]
+
+
+def _turn_lines(let: Let, value: NearestPeriod, printer: ScalarPrinter) -> list[str]:
+    """A value that is nearly always in its interval: asked first, because a call takes longer."""
+    name, centre = spelled(let.name.name), printer.print(value.args[1])
+    low, high = (literal(side * 180.0 - float(EDGE)) for side in (-1, 1))
+    away = name if value.args[1] == 0 else f"{name} - {centre}" if value.args[1].is_Symbol else f"{name} - ({centre})"
+    return [
+        *let_lines(Let(let.name, value.args[0], let.note), _MODULO_TURNS),
+        f"if not {low} <= {away} < {high}:",
+        f"    {name} = nearest_period({name}, {centre})",
+    ]
+
+
+def array_body(method: Method) -> list[str]:
+    """The body on arrays: every statement for all rows, a row's status is its first condition that does not hold."""
+    lines = array_statements(method)
+    values = _values(method, _ARRAY)
+    if method.is_shared:
+        return [*lines, *fold(f"return {values}")]
+    return [*lines, *fold(f"return {values}, status" if values else "return status")]
+
+
+def array_statements(method: Method) -> list[str]:
+    """The same without the return."""
+    lines = [*unpacked(method), *_constants(method, "self.constants")]
+    if not method.is_shared:
+        first = method.arguments[0]
+        lines.append(f"status = passed({first.name}{'[0]' if first.kind == 'Rotation' else ''})")
+    program = method.program
+    constants = fixed(program.body, {real(name) for name in constants_of(method)})
+    for item, same in grouped(in_arms(program.body, [o.value for o in program.outputs])):
+        if isinstance(item, Iterate):
+            lines += [*array_head(item, _ARRAY), *_step(item, _ARRAY), *array_end(item, _ARRAY)]
+        elif isinstance(item, Call):
+            lines += python_calls.array_lines(item, _ARRAY)
+        elif isinstance(item, FindRoot):
+            lines += python_calls.array_search(item, _ARRAY)
+        elif isinstance(item, Require):
+            lines += _note(item.note)
+            for condition in (r.condition for r in same):
+                lines += fold(f"require(status, {_ARRAY.print(condition)}, Status.{item.otherwise.name})")
+        else:
+            lines += _array_item_lines(item, constants)
+    return lines
+
+
+def _array_item_lines(item: Item, constants: Collection[sp.Symbol]) -> list[str]:
+    """A binding, or a choice."""
+    if isinstance(item, Arms):
+        return array_arm_lines(item, constants, lambda inner: _array_item_lines(inner, constants), _ARRAY)
+    assert isinstance(item, Let | Solve)
+    is_turn = isinstance(item, Let) and isinstance(item.value, NearestPeriod)
+    return binding_lines(item, _ARRAY_TURNS if is_turn else _ARRAY)
+
+
+def functions(programs: Sequence[Program]) -> list[str]:
+    """The primitives and constants that programs use, by their neutral names, in alphabetical order."""
+    found = set()
+    for program in programs:
+        values = [e for s in program.body for e in expressions(s)] + [o.value for o in program.outputs]
+        found |= {"solve"} if has_system(program) else set()
+        for node in (n for v in values for n in sp.preorder_traversal(v)):
+            found |= {FUNCTION_KEYS[type(node)]} if type(node) in FUNCTION_KEYS else set()
+            found |= {DEGREE.name} if node == DEGREE else set()
+    return sorted(found)
+
+
+def has_search(program: Program) -> bool:
+    """Whether a program searches for a root."""
+    return any(isinstance(s, FindRoot) for s in program.body)
+
+
+def has_loop(program: Program) -> bool:
+    """Whether a program iterates."""
+    return any(isinstance(s, Iterate) for s in program.body)
+
+
+def has_system(program: Program) -> bool:
+    """Whether a program solves linear equations."""
+    inner = (i for s in program.body if not isinstance(s, Call | FindRoot) for i in (s.step if isinstance(s, Iterate) else (s,)))
+    return any(isinstance(s, Solve) for s in inner)
+
+
+def binding_lines(statement: Let | Solve, printer: ScalarPrinter) -> list[str]:
+    """A statement that binds names and refuses nothing."""
+    return let_lines(statement, printer) if isinstance(statement, Let) else solve_lines(statement, printer)
+
+
+def _step(loop: Iterate, printer: ScalarPrinter) -> list[str]:
+    """The step of a loop: let lines are folded as if they were not indented, so they are a little longer."""
+    return [f"    {line}" for s in loop.step for line in binding_lines(s, printer)]
+
+
+def let_lines(let: Let, printer: ScalarPrinter) -> list[str]:
+    """A binding, with the step of the derivation behind it or before it."""
+    value = printer.print(let.value)
+    if isinstance(let.value, Select) and value.startswith("("):
+        value = value[1:-1]
+    line = f"{spelled(let.name.name)} = {value}"
+    if let.note and len(line) + len(let.note) + 4 <= WIDTH:
+        return [f"{line}  # {let.note}"]
+    return [*_note(let.note), *fold(line)]
+
+
+def conjunction(conditions: Iterable[sp.Basic]) -> str:
+    """Conditions that must all hold, as one."""
+    parts = [p for c in conditions for p in (sp.ordered(c.args) if isinstance(c, sp.And) else [c])]
+    if len(parts) == 1:
+        return _SCALAR.print(parts[0])
+    return " and ".join(_SCALAR.print(p) if isinstance(p, Relational) else f"({_SCALAR.print(p)})" for p in parts)
+
+
+def _note(note: str) -> list[str]:
+    return [f"# {note}"] if note else []
+
+
+def grouped(body: Sequence[Item]) -> Iterator[tuple[Item, tuple[Require, ...]]]:
+    """Statements in order; conditions that follow each other with the same outcome and note come together."""
+
+    def key(indexed: tuple[int, Item]) -> tuple[object, ...]:
+        index, statement = indexed
+        return (statement.otherwise.name, statement.note) if isinstance(statement, Require) else (index,)
+
+    for _, group in groupby(enumerate(body), key):
+        statements = [statement for _, statement in group]
+        yield statements[0], tuple(s for s in statements if isinstance(s, Require))
+
+
+def unpacked(method: Method) -> list[str]:
+    """The arguments by the names that the program reads; what it does not read is `_`."""
+    read = _read(method.program)
+    lines: list[str] = []
+    for argument in method.arguments:
+        if read & set(names(argument.shape)):
+            lines += taken_apart([_targets(part, read) for part in argument.shape], argument.source)
+    return lines
+
+
+def _read(program: Program) -> set[str]:
+    """What a program reads by itself: what those read that it calls is their affair."""
+    values = [e for s in program.body for e in expressions(s)] + [o.value for o in program.outputs]
+    given = {g.name for s in program.body if isinstance(s, FindRoot) for p in (s.trial, s.finish) for g in s.given(p)}
+    found = {s.name for value in values for s in symbols_of(value)} | given - {s.name for s in PLACE}
+    return found - {s.name for s in program.bound()}
+
+
+def _targets(shape: Shape, read: set[str]) -> str:
+    if isinstance(shape, str):
+        return spelled(shape) if shape in read else "_"
+    if not read & set(names(shape)):
+        return "_"
+    return tuple_of([_targets(s, read) for s in shape])
+
+
+def names(shape: Shape) -> Iterator[str]:
+    """The names of a shape, in order."""
+    if isinstance(shape, str):
+        yield shape
+    else:
+        for part in shape:
+            yield from names(part)
+
+
+def _constants(method: Method, owner: str) -> list[str]:
+    constants = constants_of(method)
+    return [f"k = {owner}", *(f"{spelled(c)} = k.{c}" for c in constants)] if constants else []
+
+
+def constants_of(method: Method) -> list[str]:
+    """What a method reads besides its arguments, in alphabetical order."""
+    given = {name for argument in method.arguments for name in names(argument.shape)}
+    return sorted(_read(method.program) - given)
+
+
+def _values(method: Method, printer: ScalarPrinter) -> str:
+    values = {o.name: printer.print(o.value) for o in method.program.outputs}
+
+    def text(shape: Shape) -> str:
+        return values[shape] if isinstance(shape, str) else tuple_of([text(s) for s in shape])
+
+    return text(method.result) if method.kind else ""

@@ -1,0 +1,234 @@
+"""What the templates of a function block read: its axes, configuration bytes, inputs and instance variables."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from derive.description.mechanism import Joint, Kind
+from derive.emit.softmotion.inputs import Input, parameter_input
+from derive.emit.softmotion.settings import SETTINGS, Settings, settings_of
+from derive.emit.st.contract import Contract
+from derive.emit.st.expression import literal
+from derive.emit.st.names import capitalized, stored_name
+from derive.emit.st.program import Printed
+from derive.ir.constants import (
+    SINGULAR,
+)
+from derive.ir.program import (
+    Program,
+)
+from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.parameters import TIE_OF_LENGTHS, chooses_by_lengths
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One axis: its place in AXISPOS_REF, its type, and the spellings of its limits."""
+
+    name: str
+    field: str
+    type: str
+    meaning: str
+    unlimited: str
+    lower: str
+    upper: str
+    output: str
+    """The neutral name of the axis value in programs."""
+    settings: Settings
+
+
+@dataclass(frozen=True)
+class BranchByte:
+    """A byte that chooses one of two branches: 1 is the first, 2 the second."""
+
+    byte: int
+    name: str
+    stem: str
+    first: str
+    second: str
+    choice: str
+    of_slot: str
+    output: str
+
+    @property
+    def choices(self) -> tuple[Input, ...]:
+        """The inputs of the block that sets a configuration."""
+        meaning = f"{self.name}: TRUE {self.first}, FALSE {self.second}"
+        return (
+            Input(f"x{self.stem}{capitalized(self.first)}", "BOOL", "TRUE", meaning),
+            Input(f"x{self.stem}Automatic", "BOOL", "FALSE", f"{self.name}: nearest to the reference"),
+        )
+
+
+@dataclass(frozen=True)
+class PeriodByte:
+    """A byte that holds the signed period number of an axis."""
+
+    byte: int
+    index: int
+    """The index of the axis, and so of its entry in GetPeriods."""
+    axis: str
+    field: str
+    input: str
+
+
+@dataclass(frozen=True)
+class Block:
+    """A function block."""
+
+    name: str
+    title: str
+    interfaces: tuple[str, ...]
+    inputs: tuple[Input, ...]
+    fields: tuple[str, ...]
+    """The instance variables of type LREAL: constants of the programs."""
+    axes: tuple[Axis, ...]
+    axis_fields: tuple[str, ...]
+    branches: tuple[BranchByte, ...]
+    periods: tuple[PeriodByte, ...]
+    configuration_size: int
+    freedom: str
+    turning: str
+    """How much of the commanded rotation is followed: a value of `Turning`."""
+    refuses_flanges: bool
+    """Of an orientation kinematics: whether some flange cannot carry it."""
+    rows: tuple[str, ...]
+    margins: tuple[str, ...]
+    computed: tuple[tuple[str, str], ...]
+    """Instance variables that Initialize assigns at its end, with the output of `setup` that each holds."""
+    has_settings: bool
+    """Whether drives hand over their limits."""
+
+    def stored(self, program: Printed) -> list[tuple[str, str]]:
+        """Instance variables and their values, given the printed `setup`."""
+        return [(field, program.outputs[output]) for field, output in self.computed]
+
+    @property
+    def slots(self) -> int:
+        """How many solutions the branches tell apart."""
+        return int(2 ** len(self.branches))
+
+    def singular(self, program: Printed) -> str:
+        """The condition of a singular pose, given the printed margins."""
+        small = [f"ABS({program.outputs[m]}) < {literal(float(SINGULAR))}" for m in self.margins]
+        return " OR ".join(f"({s})" for s in small) if len(small) > 1 else (small or ["FALSE"])[0]
+
+
+def block_of(kinematics: Kinematics, contract: Contract) -> Block:
+    """The function block of a mechanism."""
+    mechanism, spelling = kinematics.mechanism, contract.spelling
+    interfaces = _interfaces(kinematics, contract)
+    axis_fields = tuple(spelling["axes"]["fields"])
+    size = len(kinematics.branches)
+    order = {joint.name: index for index, joint in enumerate(mechanism.joints)}
+    return Block(
+        name=mechanism.block_name,
+        title=mechanism.title or mechanism.block_name,
+        interfaces=interfaces,
+        inputs=tuple(parameter_input(p) for p in kinematics.parameters),
+        fields=tuple(stored_name(name) for name in constants(kinematics)),
+        axes=tuple(_axis(j, f, contract) for j, f in zip(mechanism.joints, axis_fields, strict=False)),
+        axis_fields=axis_fields,
+        branches=tuple(_branch_byte(i, b.name, b.names) for i, b in enumerate(kinematics.branches)),
+        periods=tuple(
+            PeriodByte(size + i, order[j.name], j.name, axis_fields[order[j.name]], f"iPeriod{capitalized(j.key)}")
+            for i, j in enumerate(kinematics.period_joints)
+        ),
+        configuration_size=kinematics.configuration_size,
+        freedom=spelling["freedom"][kinematics.freedom.value],
+        turning=mechanism.task.turning.value,
+        refuses_flanges=kinematics.compatible is not None and bool(kinematics.compatible.body),
+        rows=kinematics.rows,
+        margins=tuple(m.name for m in kinematics.margins),
+        computed=_computed(kinematics, interfaces),
+        has_settings=SETTINGS in interfaces,
+    )
+
+
+def _computed(kinematics: Kinematics, interfaces: Sequence[str]) -> tuple[tuple[str, str], ...]:
+    setup = setup_of(kinematics, has_settings=SETTINGS in interfaces)
+    given, bound = {o.name for o in setup.outputs}, set(direct(kinematics, setup).values())
+    return tuple((stored_name(o), o) for o in constants(kinematics) if o in given and o not in bound)
+
+
+def programs_of(kinematics: Kinematics) -> tuple[Program, ...]:
+    """The programs that methods other than Initialize print."""
+    found: Sequence[Program | None] = (
+        kinematics.forward,
+        kinematics.orientation,
+        kinematics.branch,
+        kinematics.limits,
+        kinematics.singularity,
+        kinematics.jacobian,
+        kinematics.image,
+        kinematics.projection,
+        kinematics.offset_branch,
+        kinematics.offset_configuration,
+        kinematics.compatible,
+        kinematics.carried,
+        kinematics.total_image,
+    )
+    return tuple(p for p in found if p is not None)
+
+
+def constants(kinematics: Kinematics) -> tuple[str, ...]:
+    """The neutral names of what Initialize stores: outputs of `setup` that a method reads."""
+    read = {symbol.name for program in programs_of(kinematics) for symbol in program.reads()}
+    for joint in kinematics.mechanism.joints:
+        read |= {f"{word}_{joint.key}" for word in ("unlimited", "lower", "upper")}
+    if chooses_by_lengths(kinematics.mechanism):
+        read.add(TIE_OF_LENGTHS.name)
+    return tuple(o.name for o in kinematics.setup.outputs if o.name in read)
+
+
+def setup_of(kinematics: Kinematics, *, has_settings: bool) -> Program:
+    """What Initialize prints: where drives have settings, all but what follows from them."""
+    if not has_settings:
+        return kinematics.setup
+    assert kinematics.setup_less_windows is not None
+    return kinematics.setup_less_windows
+
+
+def direct(kinematics: Kinematics, setup: Program) -> dict[str, str]:
+    """Temporaries of `setup` that are constants themselves: their names, and the outputs that hold them."""
+    lets = {let.name.name for let in setup.lets()}
+    stored = set(constants(kinematics))
+    found: dict[str, str] = {}
+    for output in setup.outputs:
+        if output.name in stored and str(output.value) in lets:
+            found.setdefault(str(output.value), output.name)
+    return found
+
+
+def _axis(joint: Joint, field: str, contract: Contract) -> Axis:
+    word = "rotary" if joint.kind is Kind.ROTARY else "linear"
+    unlimited, lower, upper = (stored_name(f"{w}_{joint.key}") for w in ("unlimited", "lower", "upper"))
+    kind = contract.spelling["enumerators"][word]
+    return Axis(
+        joint.name, field, kind, joint.meaning, f"{unlimited} > 0.5", lower, upper, joint.axis.name, settings_of(joint)
+    )
+
+
+def _branch_byte(byte: int, name: str, names: tuple[str, str]) -> BranchByte:
+    stem = capitalized(name)
+    of_slot = f"slot/{2**byte} MOD 2 + 1" if byte else "slot MOD 2 + 1"
+    return BranchByte(byte, name, stem, names[0], names[1], f"branch{stem}", of_slot, f"branch_{name}")
+
+
+def _interfaces(kinematics: Kinematics, contract: Contract) -> tuple[str, ...]:
+    has_configuration = kinematics.configuration_size > 0
+    wanted = ["ISMKinematicWithInfo2", "ISMKinematicWithInitialization"]
+    if has_configuration:
+        wanted.append("ISMKinematicWithConfigurations4")
+    if kinematics.period_joints:
+        wanted += ["ISMKinPeriodHandling", SETTINGS]
+    if kinematics.mechanism.is_orientation:
+        wanted += ["ISMOrientationKinematics3", "ISMToolKinematics2", "ISMOrientationKinematicsWithOriImage2"]
+    elif kinematics.mechanism.is_position and kinematics.offset_branch is None:
+        wanted.append("ISMPositionKinematics2")
+    elif kinematics.mechanism.is_position:
+        wanted.append("ISMPositionKinematics_Offset2" if has_configuration else "ISMPositionKinematics_Offset")
+    if kinematics.projection is not None and not kinematics.mechanism.is_orientation:
+        wanted.append("ISMKinematicsWithOrientationImage2")
+    return tuple(name for name in map(contract.available, wanted) if name is not None)

@@ -1,0 +1,198 @@
+"""The comment of a function block: its description in reStructuredText, as the configurator shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import astuple
+from textwrap import wrap
+
+from jinja2 import Environment
+
+from derive.description.mechanism import Kind, Role
+from derive.emit.softmotion.block import Block
+from derive.emit.st.names import input_name, respelled
+from derive.ir.constants import (
+    EXACT_ROTATION,
+    FREE_ANGLE,
+    ONE_TURN,
+    ROTATION,
+)
+from derive.kinematics.kinematics import Kinematics
+from derive.report.cost import Bound, Cost, Costs, costs_of
+from derive.report.reasons import workspace
+
+_WIDTH = 100
+_MOTION = {Kind.ROTARY: "rotary, deg", Kind.LINEAR: "linear, u", Kind.HELICAL: "turns, deg; declared linear"}
+_PERIOD = "1 is -180 to 180 degrees, 2 the turn above, -1 the turn below, 0 open"
+_BRANCH = "0 automatic, 3 where both solutions coincide"
+_READ = (
+    f"A commanded rotation may be one to a few digits only, as from REAL: where its transpose times itself differs from the "
+    f"identity by more than {float(EXACT_ROTATION):g} it is repaired (z, the direction of the tool, is kept), by more than "
+    f"{float(ROTATION):g} refused."
+)
+_NOT_READ = "The commanded rotation is not looked at."
+_COST_HEAD = ("Method", "Additions", "Multiplications", "Divisions", "Square roots", "Sines")
+_OPEN_TURN = (
+    f"A turn that is left open: an axis whose limits in the block are at most {ONE_TURN} degrees apart takes its one value "
+    "inside them, wherever the reference is. Any other takes the value nearest to the reference, and the limits alone refuse: "
+    f"they choose no other turn. So enter the limits of a range of up to {ONE_TURN} degrees in the block, too; of an axis with a "
+    "wider range name the turn for point-to-point movements. Where the turn is what refuses, Diagnose says so, and iTurn is "
+    "the one to name."
+)
+_KINDS = {
+    (True, False): "Position kinematics for a SoftMotion axis group. ",
+    (False, True): "Orientation kinematics, to be combined with a position kinematics for a SoftMotion axis group. ",
+    (False, False): "Kinematics for a SoftMotion axis group. ",
+}
+"""By whether it is a position kinematics, and whether an orientation kinematics."""
+_WITHOUT_LENGTH = (
+    f"where an axis is free: within {float(FREE_ANGLE):g} of your unit of length. The machine has no length that a distance from "
+    "there could be compared with: its margin is 1 elsewhere, and IsSingularity gives no warning before"
+)
+_AUTOMATIC = (
+    "Automatic bytes take the solution nearest to the reference. They are meant for point-to-point movements; "
+    "limits refuse a solution, they never choose another one."
+)
+_DRIVES = (
+    "The limits that SoftMotion hands over (AxisSettings) narrow those of the block: what is inside both decides which turn "
+    "of an axis is taken, and what is refused. Where none are handed over, the limits of the block count alone."
+)
+
+
+def description(kinematics: Kinematics, block: Block, picture: str, templates: Environment) -> str:
+    """The description of a block, with a reference to its picture."""
+    names = {p.name: input_name(p) for p in kinematics.parameters}
+    mechanism = kinematics.mechanism
+    source = f"{_KINDS[mechanism.is_position, mechanism.is_orientation]}Source of the geometry: {mechanism.source}."
+    text = templates.get_template("description.rst.j2").render(
+        mechanism=mechanism,
+        picture=picture.format(name=block.name),
+        source="\n".join(wrap(source, _WIDTH)),
+        summary="\n".join(wrap(kinematics.mechanism.summary, _WIDTH)),
+        rows=", ".join(kinematics.rows),
+        axes=_table(("Axis", "Motion", "Meaning"), _axes(kinematics)),
+        parameters=_table(("Parameter", "Unit", "Range", "Meaning"), _parameters(block)),
+        refused=wrap(f"{_refused(kinematics)}The parameters are read by Initialize alone.", _WIDTH),
+        configuration=list(_configuration(block)),
+        drives=wrap(_DRIVES, _WIDTH) if block.has_settings else [],
+        singularities=list(_singularities(kinematics)),
+        workspace=list(_workspace(kinematics)),
+        costs=list(_costs(costs_of(kinematics), block)),
+        notes=[line for note in kinematics.mechanism.notes for line in _item(respelled(note, names))],
+        verification=list(_verification(kinematics)),
+    )
+    return text.rstrip("\n")
+
+
+def _axes(kinematics: Kinematics) -> Iterator[Sequence[str]]:
+    for joint in kinematics.mechanism.joints:
+        yield joint.name, _MOTION[joint.kind], joint.meaning
+
+
+def _parameters(block: Block) -> Iterator[Sequence[str]]:
+    for given in block.inputs:
+        yield given.name, given.unit or "-", given.range or given.type, given.meaning
+
+
+def _refused(kinematics: Kinematics) -> str:
+    """The lengths that may not be 0, which is what they are where nothing is given."""
+    lengths = [input_name(p) for p in kinematics.parameters if p.role in (Role.LENGTH, Role.SIGNED_LENGTH)]
+    return f"A length has no default: Initialize refuses 0 for {', '.join(lengths)}. " if lengths else ""
+
+
+def _configuration(block: Block) -> Iterator[str]:
+    if not block.configuration_size:
+        yield "None: every pose has one solution."
+        return
+    for branch in block.branches:
+        yield from _item(f"Byte {branch.byte}, {branch.name}: 1 {branch.first}, 2 {branch.second}, {_BRANCH}.")
+    for period in block.periods:
+        yield from _item(f"Byte {period.byte}, turn of {period.axis} (signed): {_PERIOD}.")
+    yield ""
+    yield from wrap(f"{block.name}_Config sets a configuration, {block.name}_ReadConfig reads one. {_AUTOMATIC}", _WIDTH)
+    if block.periods:
+        yield ""
+        yield from wrap(_OPEN_TURN, _WIDTH)
+
+
+def _singularities(kinematics: Kinematics) -> Iterator[str]:
+    if not kinematics.margins:
+        yield "None."
+    for margin in kinematics.margins:
+        what = "where its margin, a number without a unit, is 0" if margin.length is None else _WITHOUT_LENGTH
+        yield from _item(f"{margin.name} ({margin.kind}): {what}.")
+
+
+def _workspace(kinematics: Kinematics) -> Iterator[str]:
+    own = [quantity.meaning for quantity in kinematics.mechanism.limited]
+    limits = " and of ".join(["the limits of the axes", *own]) if own else "the limits of the axes"
+    bounds = workspace(kinematics)
+    if not kinematics.mechanism.joints:
+        yield "Every pose: there is no axis."
+    elif not bounds:
+        yield from wrap(f"Every position that {limits} allow.", _WIDTH)
+    else:
+        why = "Diagnose says which, and by how much if that has a measure"
+        yield from wrap(f"A pose inside {limits} is refused for these reasons only; {why}:", _WIDTH)
+        yield ""
+    for bound in bounds:
+        yield from _item(f"{bound}.")
+    yield ""
+    yield from wrap(_READ if kinematics.reads_rotation else _NOT_READ, _WIDTH)
+
+
+def _verification(kinematics: Kinematics) -> Iterator[str]:
+    found = kinematics.evidence
+    if found is None:
+        yield "None."
+        return
+    text = (
+        f"The formulas were derived from the closure equations and checked against them at {found.poses} poses: "
+        f"residual {found.closure_residual:.0e}"
+    )
+    if (inverted := found.inverted) is not None:
+        text += (
+            f", inverse after forward {inverted.round_trip:.0e}, Jacobian against automatic differentiation "
+            f"{inverted.jacobian:.0e}; {inverted.solutions} solutions were found by multi-start root finding, each of them a "
+            "solution of these formulas"
+        )
+    yield from wrap(f"{text}. No run on a controller.", _WIDTH)
+    if inverted is not None and inverted.missed is not None:
+        missed, total = inverted.missed
+        yield from wrap(
+            f"A search is no proof: of {total} solutions, most of them next to where branches meet, it missed {missed}.", _WIDTH
+        )
+
+
+def _costs(costs: Costs, block: Block) -> Iterator[str]:
+    rows = [("AxesToCartesian", costs.forward), ("CartesianToAxes", costs.inverse)]
+    if block.branches:
+        rows[1:] = [("CartesianToAxes, one branch", costs.inverse)]
+        rows.append((f"CartesianToAxes, all {block.slots} branches open", costs.automatic))
+    yield from _table(_COST_HEAD, map(_cost_row, rows))
+    if costs.bounds:
+        yield ""
+    for bound in costs.bounds:
+        yield from _item(_bound(bound))
+
+
+def _cost_row(row: tuple[str, Cost]) -> Sequence[str]:
+    return row[0], *map(str, astuple(row[1]))
+
+
+def _bound(bound: Bound) -> str:
+    what = f"{bound.note[0].upper()}{bound.note[1:]}"
+    return f"{what}: at most {bound.limit} passes, all of which are counted; it stops as soon as it is done."
+
+
+def _item(text: str) -> list[str]:
+    return wrap(text, _WIDTH, initial_indent="- ", subsequent_indent="  ")
+
+
+def _table(head: Sequence[str], rows: Iterator[Sequence[str]]) -> list[str]:
+    """A simple table of reStructuredText."""
+    cells = [head, *rows]
+    widths = [max(len(row[column]) for row in cells) for column in range(len(head))]
+    rule = " ".join("=" * width for width in widths)
+    lines = [" ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+    return [rule, lines[0], rule, *lines[1:], rule]

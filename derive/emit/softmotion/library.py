@@ -1,0 +1,142 @@
+"""Structured Text: a function block for every mechanism, and the objects they share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from jinja2 import Environment
+
+from derive.emit.language import GENERATED, TEMPLATES, environment
+from derive.emit.plcopen import document as plcopen
+from derive.emit.plcopen.objects import Object, objects_of, ruled
+from derive.emit.plcopen.uses import needed
+from derive.emit.softmotion.block import block_of
+from derive.emit.softmotion.description import description
+from derive.emit.softmotion.methods import methods_of
+from derive.emit.softmotion.overview import overview
+from derive.emit.softmotion.self_test import FOLDER as SELF_TESTS
+from derive.emit.softmotion.self_test import PROGRAM as SELF_TEST_PROGRAM
+from derive.emit.softmotion.self_test import test_of
+from derive.emit.st.contract import Contract, load
+from derive.emit.st.expression import literal
+from derive.emit.st.layout import assigned
+from derive.emit.st.reserved import refuse_clashes
+from derive.emit.st.rotation import rotation_function
+from derive.emit.st.scan import SEARCH
+from derive.ir.constants import (
+    EDGE,
+    FREE_ANGLE,
+    HELD,
+    LARGEST,
+    PIVOT,
+    SOLVABLE,
+)
+from derive.kinematics.kinematics import Kinematics
+from derive.report.reasons import NO_MEANING, NOT_INITIALIZED
+
+_FOLDER = "st"
+_SHARED = "softkin"
+"""The folder of the objects that all blocks share."""
+_PREAMBLE = f"""\
+// {GENERATED}
+// To paste: between two rulers stands the declaration or the implementation of the object that the upper one names.
+"""
+
+
+@dataclass(frozen=True)
+class StructuredTextFiles:
+    """The language: text, PLCopenXML and the import script, for a profile of the SoftMotion contract (its own if `None`)."""
+
+    profile: str | None = None
+    name: ClassVar[str] = _FOLDER
+
+    def __post_init__(self) -> None:
+        """Refuse a profile that the contract has not, before anything is derived."""
+        load(self.profile)
+
+    def render(self, kinematics: Sequence[Kinematics]) -> dict[str, str]:
+        """All files of the language: path below its folder → text. Raises `DescriptionError` for a name that clashes."""
+        contract, templates = load(self.profile), _templates()
+        objects = dict(_objects(kinematics, contract, templates))
+        refuse_clashes({f"{path}.st": inside for path, inside in objects.items()})
+        files = {f"{path}.st": f"{_PREAMBLE}\n{ruled(inside)}" for path, inside in objects.items()}
+        files |= {f"{path}.xml": text for path, text in _documents(objects)}
+        rows = list(overview(kinematics))
+        for name in ("import_softkin.py", "README.md"):
+            files[name] = templates.get_template(f"{name}.j2").render(contract.spelling, overview=rows)
+        return dict(sorted(files.items()))
+
+
+def _objects(
+    kinematics: Sequence[Kinematics], contract: Contract, templates: Environment
+) -> Iterator[tuple[str, tuple[Object, ...]]]:
+    """The objects of every file, by its path without the ending."""
+    rotation = rotation_function(contract)
+    for path in sorted((TEMPLATES / _FOLDER / _SHARED).glob("*.st.j2")):
+        text = templates.get_template(f"{_SHARED}/{path.name}").render(contract.spelling, rotation=rotation)
+        yield f"{_SHARED}/{path.name.removesuffix('.st.j2')}", objects_of(text)
+    for one in kinematics:
+        yield f"{one.mechanism.family}/{one.mechanism.block_name}", objects_of(_unit(one, contract, templates))
+    yield from _self_tests(kinematics, contract, templates)
+
+
+def _self_tests(
+    kinematics: Sequence[Kinematics], contract: Contract, templates: Environment
+) -> Iterator[tuple[str, tuple[Object, ...]]]:
+    """A self-test for every block that has vectors, and the program that runs all of them."""
+    found = [test for one in kinematics if (test := test_of(one, block_of(one, contract))) is not None]
+    for test in found:
+        text = templates.get_template("selftest.st.j2").render(contract.spelling, test=test)
+        yield f"{SELF_TESTS}/{test.name}", objects_of(text)
+    if found:
+        text = templates.get_template("program_selftest.st.j2").render(contract.spelling, tests=found)
+        yield f"{SELF_TESTS}/{SELF_TEST_PROGRAM}", objects_of(text)
+
+
+def _documents(objects: Mapping[str, Sequence[Object]]) -> Iterator[tuple[str, str]]:
+    """PLCopenXML: one file with everything, and one for every mechanism with what it needs."""
+    yield "softkin", plcopen.document("Softkin", GENERATED, _by_folder(objects))
+    for path in objects:
+        if not path.startswith((f"{_SHARED}/", f"{SELF_TESTS}/")):
+            chosen = {p: objects[p] for p in needed(path, objects)}
+            yield path, plcopen.document("Softkin", GENERATED, _by_folder(chosen))
+
+
+def _by_folder(objects: Mapping[str, Sequence[Object]]) -> dict[str, list[Object]]:
+    folders: dict[str, list[Object]] = {}
+    for path, inside in sorted(objects.items()):
+        folders.setdefault(path.split("/")[0], []).extend(inside)
+    return folders
+
+
+def _templates() -> Environment:
+    templates = environment(_FOLDER)
+    templates.globals.update(
+        assigned=assigned,
+        generated=GENERATED,
+        degree=literal(math.pi / 180.0),
+        free_angle=literal(float(FREE_ANGLE)),
+        edge=literal(float(EDGE)),
+        largest=literal(float(LARGEST)),
+        held=literal(float(HELD)),
+        pivot=literal(float(PIVOT)),
+        solvable=literal(float(SOLVABLE)),
+        smallest=literal(1.0 / float(SOLVABLE)),
+        search=SEARCH,
+        not_initialized=NOT_INITIALIZED,
+        no_meaning=NO_MEANING,
+    )
+    return templates
+
+
+def _unit(kinematics: Kinematics, contract: Contract, templates: Environment) -> str:
+    block = block_of(kinematics, contract)
+    return templates.get_template("block.st.j2").render(
+        contract.spelling,
+        block=block,
+        description=description(kinematics, block, contract.spelling["pictures"]["reference"], templates),
+        methods=methods_of(kinematics, block, contract, templates),
+    )

@@ -1,0 +1,226 @@
+"""The methods of a function block: which it has, what their programs read, and how they refuse."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from jinja2 import Environment
+
+from derive.emit.softmotion.block import Block, constants, direct, setup_of
+from derive.emit.softmotion.calls import BranchCall, branch_call
+from derive.emit.softmotion.inputs import number_of
+from derive.emit.st.contract import Contract, Parameter, Signature
+from derive.emit.st.names import joined, stored_name
+from derive.emit.st.program import Printed, printed
+from derive.emit.st.refusal import MISSING, REASON, TURN, Explained, Refusal
+from derive.emit.st.scan import SEARCH, search_in, search_text, try_at_signature
+from derive.emit.st.shared import method_name, own_names, signature_of
+from derive.ir.program import FindRoot, Program, shared
+from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.parameters import limits_of_axis
+from derive.report.reasons import reasons_of, texts
+
+LIMITS_OF_AXIS = limits_of_axis()
+
+_FIRST = (
+    "Initialize",
+    "IsInitialized",
+    "GetKinematicsName",
+    "GetAxisProperties",
+    "AxisSettings",
+    "AxesToCartesian",
+    "CartesianToAxes",
+    "AxesToOrientation",
+    "IsSingularity",
+    "Jacobian",
+    "Diagnose",
+    "GetOrientationImage",
+    "GetFlangeOrientationImageTotal",
+    "GetFlangeOrientationImageWithOri",
+    "AxesToConfiguration_Offset",
+    "CartesianToAxes_Offset",
+    "IsCompatibleWithPosKin",
+    "GetPositionFromOrientation3",
+    "GetPositionFromOrientation2",
+    "GetPositionFromOrientation",
+    "GetOrientationImageTotal",
+    "GetOrientationImageWithOri",
+)
+
+
+@dataclass(frozen=True)
+class Method:
+    """A method as text: its declaration with parameters, and its own variables with the statements."""
+
+    head: str
+    text: str
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A method before it is text: its signature, its program, and the call of a branch it makes."""
+
+    signature: Signature
+    program: Program | None = None
+    call: BranchCall | None = None
+    is_shared: bool = False
+    search: FindRoot | None = None
+    """Of the methods that search for a root."""
+
+
+def methods_of(kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> tuple[Method, ...]:
+    """All methods in the order of the contract, private ones behind the method that calls them."""
+    return tuple(_method(source, kinematics, block, contract, templates) for source in _sources(kinematics, block, contract))
+
+
+def spelled_inputs(kinematics: Kinematics) -> dict[str, str]:
+    """How every free name of a program other than `setup` is spelled in a method."""
+    spelled = {name: stored_name(name) for name in constants(kinematics)}
+    for index, joint in enumerate(kinematics.mechanism.joints):
+        spelled[joint.axis.name] = f"a.a{index}"
+        spelled[joint.reference.name] = f"aRef.a{index}"
+        spelled[joint.turn.name] = joined(joint.turn.name)
+    for axis in "xyz":
+        spelled[f"flange_axis_{axis}"], spelled[f"base_axis_{axis}"] = f"flangeAxis.d{axis.upper()}", f"baseAxis.d{axis.upper()}"
+    spelled |= {f"sigma_{b.name}": joined(f"sigma_{b.name}") for b in kinematics.branches}
+    return spelled | {f"r{r}{c}": f"rot[{r}, {c}]" for r in (1, 2, 3) for c in (1, 2, 3)}
+
+
+def _sources(kinematics: Kinematics, block: Block, contract: Contract) -> Iterator[_Source]:
+    known = contract.signatures
+    programs = {
+        "Initialize": setup_of(kinematics, has_settings=block.has_settings),
+        "AxesToCartesian": kinematics.forward,
+        "AxesToOrientation": kinematics.orientation,
+        "IsSingularity": kinematics.singularity,
+        "GetOrientationImage": kinematics.image,
+        "GetFlangeOrientationImageWithOri": kinematics.projection,
+        "AxesToConfiguration_Offset": kinematics.offset_configuration,
+        "Jacobian": kinematics.jacobian,
+        "IsCompatibleWithPosKin": kinematics.compatible,
+        "GetPositionFromOrientation3": kinematics.carried,
+        "GetOrientationImageTotal": kinematics.total_image,
+        "GetOrientationImageWithOri": kinematics.image if kinematics.total_image else kinematics.projection,
+    }
+    solved = {"CartesianToAxes": kinematics.branch, "CartesianToAxes_Offset": kinematics.offset_branch}
+    names = _names(block, contract)
+    if "GetOrientationImage" not in names:
+        programs["GetFlangeOrientationImageTotal"] = kinematics.image
+    ready: set[str] = set()
+    for name in names:
+        program = solved.get(name)
+        if program is None:
+            call = branch_call(known["CartesianToAxes"], kinematics.branch, kinematics, block) if name == "Diagnose" else None
+            yield _Source(known[name], programs.get(name), call)
+            yield from _shared(programs.get(name), kinematics, contract, ready)
+            if name == "Initialize" and block.has_settings:
+                yield _Source(signature_of(LIMITS_OF_AXIS, {}, contract), LIMITS_OF_AXIS, is_shared=True)
+            if name == "GetPositionFromOrientation3":
+                yield _Source(_end_point(known[name], contract))
+            continue
+        call = branch_call(known[name], program, kinematics, block)
+        yield _Source(known[name], call=call)
+        yield _Source(_explained(call.signature) if name == "CartesianToAxes" else call.signature, program)
+        yield from _shared(program, kinematics, contract, ready)
+        if name == "CartesianToAxes":
+            yield _Source(_explained(_check_limits(contract), turns=bool(block.periods)), kinematics.limits)
+
+
+def _quotable(text: str) -> str:
+    """The text as it stands between the quotes of a string."""
+    return text.replace("$", "$$").replace("'", "$'")
+
+
+def _explained(signature: Signature, *, turns: bool = False) -> Signature:
+    """With outputs that only Diagnose reads."""
+    outputs = [Parameter("VAR_OUTPUT", REASON, "INT"), Parameter("VAR_OUTPUT", MISSING, "LREAL")]
+    outputs += [Parameter("VAR_OUTPUT", TURN, "INT")] if turns else []
+    return replace(signature, parameters=(*signature.parameters, *outputs))
+
+
+def _shared(program: Program | None, kinematics: Kinematics, contract: Contract, ready: set[str]) -> Iterator[_Source]:
+    """The programs that a method is the first to call."""
+    called = shared([program]) if program is not None else ()
+    for inner in (p for p in called if p.name not in ready):
+        ready.add(inner.name)
+        if (search := search_in(inner)) is not None:
+            yield _Source(try_at_signature(search), search=search)
+        yield _Source(signature_of(inner, spelled_inputs(kinematics), contract), inner, is_shared=True, search=search)
+
+
+def _names(block: Block, contract: Contract) -> list[str]:
+    """The public methods: of all implemented interfaces and our own, what a reader looks for first in front."""
+    names = [m for i in contract.closure(block.interfaces) for m in i.methods]
+    names = list(dict.fromkeys([*names, *contract.own]))
+    return sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
+
+
+def _check_limits(contract: Contract) -> Signature:
+    axes = contract.signatures["Jacobian"].parameters[1]
+    return Signature("TestLimits", contract.spelling["types"]["error"], (axes,), "PRIVATE")
+
+
+def _end_point(public: Signature, contract: Contract) -> Signature:
+    """Where the end point is on a flange of known orientation."""
+    flange = Parameter("VAR_IN_OUT CONSTANT", "mFlange", contract.spelling["types"]["matrix"])
+    kept = (p for p in public.parameters if p.name != "oriInfo")
+    ordered = sorted((*kept, flange), key=lambda p: p.name != "v")
+    return Signature("EndPointOnFlange", public.returns, tuple(ordered), "PRIVATE")
+
+
+def _method(source: _Source, kinematics: Kinematics, block: Block, contract: Contract, templates: Environment) -> Method:
+    name = source.signature.name
+    reads = kinematics.reads_rotation
+    context: dict[str, object] = {"block": block, "method": name, "call": source.call, "reads_rotation": reads}
+    if name == "Diagnose":
+        context["reasons"] = [_quotable(text) for text in texts(kinematics)]
+    if source.search is not None:
+        context |= {"shared": search_text(source.search), "search": SEARCH}
+    elif source.program is not None:
+        context["program"] = program = _printed(source, source.program, kinematics, block, contract)
+        own = own_names(source.program, spelled_inputs(kinematics))
+        context["results"] = [(own[o], text) for o, text in program.outputs.items() if o in own and own[o] != text]
+    template = "Shared" if source.is_shared and source.search is None else name
+    text = templates.get_template(f"methods/{template}.st.j2").render(contract.spelling, **context)
+    return Method(source.signature.head(), _tidy(text))
+
+
+def _printed(source: _Source, program: Program, kinematics: Kinematics, block: Block, contract: Contract) -> Printed:
+    signature = source.signature
+    taken = {i.name for i in block.inputs} | set(block.fields) | {p.name for p in signature.parameters}
+    taken |= {"initialized", "matrixOrder", "checkLimits", "DEGREE", "NumAxes", *contract.signatures}
+    taken |= {method_name(inner) for inner in (*kinematics.shared, LIMITS_OF_AXIS)}
+    errors, error = contract.spelling["errors"], contract.spelling["types"]["error"]
+    refusal = Refusal(signature, errors, error)
+    if REASON in {p.name for p in signature.parameters}:
+        refusal = Explained(signature, errors, error, reasons_of(kinematics), texts(kinematics))
+    if signature.name == "Initialize":
+        given = {p.name: number_of(p) for p in kinematics.parameters}
+        stored = {let: stored_name(output) for let, output in direct(kinematics, program).items()}
+        return printed(program, given, stored, taken, refusal)
+    spelled = spelled_inputs(kinematics)
+    if source.is_shared:
+        own = own_names(program, spelled)
+        return printed(program, spelled | own, {o.name: own[o.name] for o in program.outputs}, taken, refusal)
+    return printed(program, _positions(signature) | spelled, {}, taken, refusal)
+
+
+def _positions(signature: Signature) -> dict[str, str]:
+    """The spelling of a commanded position and of a tool offset, by the parameters that hold them."""
+    names = {p.name for p in signature.parameters}
+    point = "v_MCS" if "v_MCS" in names else "f.vT"
+    spelled = {axis: f"{point}.d{axis.upper()}" for axis in "xyz"}
+    if "vOffset_TCP" in names:
+        spelled |= {f"point_{axis}": f"vOffset_TCP.d{axis.upper()}" for axis in "xyz"}
+    return spelled
+
+
+def _tidy(text: str) -> str:
+    """Without empty sections, and with single empty lines between paragraphs only."""
+    text = re.sub(r"\n(VAR\n)\s*\n", r"\n\1", "\n" + text)
+    text = re.sub(r"\n\s*\n(END_VAR|END_IF|END_FOR)", r"\n\1", text)
+    text = re.sub(r"\nVAR\nEND_VAR(?=\n)", "", text)
+    text = re.sub(r"\n{3,}", "\n\n", text)
+    return text.strip("\n") if text.lstrip("\n").startswith("VAR") else "\n" + text.strip("\n")

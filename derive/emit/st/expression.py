@@ -1,0 +1,83 @@
+"""Expressions in Structured Text."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import sympy as sp
+
+from derive.emit.expression import ExpressionPrinter
+from derive.ir.constants import (
+    LARGEST,
+)
+from derive.ir.primitives import (
+    Select,
+)
+
+_FUNCTIONS = {
+    "sin": "SIN",
+    "cos": "COS",
+    "abs": "ABS",
+    "root": "Softkin_Root",
+    "atan2": "Softkin_Atan2",
+    "nearest_period": "Softkin_NearestPeriod",
+    "nearest_on_arc": "Softkin_NearestOnArc",
+}
+
+
+def literal(value: float) -> str:
+    """A LREAL literal: always with a point, the exponent with a capital E."""
+    mantissa, _, exponent = repr(float(value)).partition("e")
+    if "." not in mantissa:
+        mantissa += ".0"
+    if exponent:
+        return f"{mantissa}E{int(exponent)}"
+    digits = mantissa.rstrip("0").rstrip(".").rstrip("0")
+    zeros = len(mantissa.split(".")[0]) - len(digits)
+    return f"{digits}.0E{zeros}" if mantissa.endswith(".0") and zeros >= 6 and len(digits) == 1 else mantissa
+
+
+def is_size_test(condition: sp.Basic) -> bool:
+    """Whether a condition asks of an input that it is a number of reasonable size."""
+    if not isinstance(condition, sp.Le) or condition.rhs != LARGEST or not isinstance(condition.lhs, sp.Abs):
+        return False
+    return bool(condition.lhs.args[0].is_Symbol)
+
+
+def is_larger(expression: sp.Basic) -> bool:
+    """Whether a choice takes the larger of two values."""
+    return isinstance(expression, Select) and expression.args[0] == sp.Gt(*expression.args[1:])
+
+
+class StructuredText(ExpressionPrinter):
+    """Spell an expression, given the spelling of every name in it."""
+
+    def __init__(self, names: Mapping[str, str]) -> None:
+        self.names = names
+
+    def print(self, expression: sp.Basic) -> str:
+        """The expression as text. The size of an input is tested by comparison: nothing else is safe."""
+        if is_size_test(expression):
+            return f"Softkin_IsNumber({self.print(expression.lhs.args[0])})"
+        if is_larger(expression):
+            return f"MAX({self.print(expression.args[2])}, {self.print(expression.args[1])})"
+        return super().print(expression)
+
+    def name(self, symbol: sp.Symbol) -> str:
+        """A symbol's spelling."""
+        return self.names[symbol.name]
+
+    def number(self, value: float) -> str:
+        """A LREAL literal."""
+        return literal(value)
+
+    def call(self, key: str, arguments: Sequence[str]) -> str:
+        """A primitive applied to printed arguments."""
+        if key == "select":
+            condition, if_true, if_false = arguments
+            return f"SEL({condition}, {if_false}, {if_true})"
+        return f"{_FUNCTIONS[key]}({', '.join(arguments)})"
+
+    def logic(self, word: str) -> str:
+        """Logical words."""
+        return word.upper()

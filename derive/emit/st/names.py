@@ -1,0 +1,62 @@
+"""Names in Structured Text: words joined, prefixes at the interface, unique ignoring case."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+from derive.description.mechanism import Parameter, Role
+from derive.emit.st.reserved import reserved
+
+_LETTERS = {"zc": "ZC"}
+"""Words that are letters of axes."""
+_NEUTRAL = re.compile(r"[a-z]+(_[a-z0-9]+)+")
+_PREFIX = {Role.FLAG: "x", Role.SIGN: "i"}
+
+TEMPLATE_LOCALS = frozenset(
+    """
+    apart baseaxis branch candidate column configuration distance drivelimited drivelower driveupper failure flange flangeaxis
+    found frame highest identity least lowest middle nothing order ownlower ownunlimited ownupper projected relative rot
+    rotation row single slot solution space status total tried
+    """.split()
+)
+"""Variables that the templates of methods declare."""
+
+
+def joined(name: str) -> str:
+    """`link_length_1` → `linkLength1`."""
+    first, *rest = name.split("_")
+    return first + "".join(capitalized(word) for word in rest)
+
+
+def capitalized(name: str) -> str:
+    """`link_length_1` → `LinkLength1`."""
+    return "".join(_LETTERS.get(word, word[:1].upper() + word[1:]) for word in name.split("_"))
+
+
+def input_name(parameter: Parameter) -> str:
+    """The input of the function block: `dLinkLength1`, `xFlangeDown`, `iDirectionR`."""
+    return _PREFIX.get(parameter.role, "d") + capitalized(parameter.name)
+
+
+def stored_name(name: str) -> str:
+    """The instance variable for a constant: `link_length_1` → `linkLength1`."""
+    return spellings((name,), ())[name]
+
+
+def respelled(text: str, names: Mapping[str, str]) -> str:
+    """A sentence with the neutral names in it as they are spelled here, in ASCII."""
+    return _NEUTRAL.sub(lambda found: names.get(found.group(), found.group()), text).replace("²", "^2")
+
+
+def spellings(names: Iterable[str], taken: Iterable[str]) -> dict[str, str]:
+    """A spelling for every neutral name, none of which is reserved or taken."""
+    used = {t.lower() for t in taken} | reserved() | TEMPLATE_LOCALS
+    found: dict[str, str] = {}
+    for name in names:
+        spelled = joined(name)
+        while spelled.lower() in used:
+            spelled += "Value"
+        used.add(spelled.lower())
+        found[name] = spelled
+    return found

@@ -1,0 +1,103 @@
+"""How a method ends where a condition of its program does not hold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.emit.st.contract import Signature
+from derive.emit.st.expression import StructuredText
+from derive.emit.st.layout import conjunction, indented, wrapped
+from derive.ir.program import Iterate, Require, Status
+from derive.report.other_turns import OtherTurn
+from derive.report.reasons import Reasons
+
+REASON, MISSING, TURN = "iReason", "dMissing", "iTurn"
+"""The outputs of a method that explains its refusals: a number, for which Diagnose has the text, an amount, and the number of a
+turn that is inside."""
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """The statements up to and with RETURN, for a method of that signature."""
+
+    signature: Signature
+    errors: Mapping[str, str]
+    """The spelling of every status, by its name."""
+    type: str
+    """The type of an error."""
+
+    def of(self, status: Status) -> tuple[str, ...]:
+        """Refuse with a status."""
+        return self.answering(self.errors[status.name])
+
+    def of_loop(self, loop: Iterate) -> tuple[str, ...]:
+        """Refuse where a loop was never left."""
+        return self.of(loop.otherwise)
+
+    def answering(self, error: str) -> tuple[str, ...]:
+        """Refuse with an error that an expression gives. What allows no pose is singular; any other question is answered no."""
+        if not self.signature.returns:
+            return ("RETURN;",)
+        answer = "TRUE" if self.signature.name == "IsSingularity" else "FALSE"
+        value = answer if self.signature.returns == "BOOL" else error
+        return (f"{self.signature.name} := {value};", "RETURN;")
+
+    def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
+        """Refuse where conditions that refuse alike do not all hold."""
+        parts = [printer.print(part) for r in requires for part in sp.ordered(sp.And.make_args(r.condition))]
+        head = conjunction("IF NOT (", parts, ") THEN")
+        return [*head, *indented(self.of(requires[0].otherwise)), "END_IF"]
+
+
+@dataclass(frozen=True)
+class Explained(Refusal):
+    """The same for a method that also says why, and how much is missing."""
+
+    reasons: Reasons
+    texts: Sequence[str]
+    """All reasons of the block: the place of one, from 1, is its number."""
+
+    def of_loop(self, loop: Iterate) -> tuple[str, ...]:
+        """Refuse where a loop was never left."""
+        return self._because(self.reasons.loop(loop), loop.otherwise)
+
+    def lines(self, requires: Sequence[Require], printer: StructuredText) -> list[str]:
+        """Every reason for itself."""
+        return list(self._lines(requires, printer))
+
+    def _lines(self, requires: Sequence[Require], printer: StructuredText) -> Iterator[str]:
+        for check in self.reasons.checks(requires):
+            yield from conjunction("IF NOT (", [printer.print(c) for c in check.conditions], ") THEN")
+            if check.missing != 0:
+                yield from indented(wrapped(f"{MISSING} := {printer.print(check.missing)};"))
+            yield from indented([*self._numbered(check.reason, check.turns, printer), *self.of(check.status)])
+            yield "END_IF"
+
+    def _numbered(self, plain: str, turns: Sequence[tuple[OtherTurn, str]], printer: StructuredText) -> Iterator[str]:
+        """The number of the reason: of the first axis that is inside on another turn, or the plain one."""
+        if not turns:
+            yield f"{REASON} := {self._number(plain)};"
+            return
+        (turn, reason), *others = turns
+        low, high = (_one(word, ends, printer) for word, ends in (("MAX", turn.lowest), ("MIN", turn.highest)))
+        yield from wrapped(f"{TURN} := Softkin_TurnInside({printer.print(turn.axis)}, {low}, {high});")
+        yield f"IF {TURN} <> 0 THEN"
+        yield from indented([f"{REASON} := {self._number(reason)};"])
+        yield "ELSE"
+        yield from indented(list(self._numbered(plain, others, printer)))
+        yield "END_IF"
+
+    def _number(self, reason: str) -> int:
+        return self.texts.index(reason) + 1
+
+    def _because(self, reason: str, status: Status) -> tuple[str, ...]:
+        return (f"{REASON} := {self._number(reason)};", *self.of(status))
+
+
+def _one(word: str, ends: Sequence[sp.Expr], printer: StructuredText) -> str:
+    """The largest or the smallest of one or more ends."""
+    texts = [printer.print(end) for end in ends]
+    return f"{word}({', '.join(texts)})" if len(texts) > 1 else texts[0]

@@ -1,0 +1,121 @@
+"""The search for a root in Structured Text: a private method around the two programs that it calls.
+
+`FindRoot` is the same text for every mechanism, but for what is handed on; `TryAt` calls the trial at a place of a cell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from derive.emit.st.contract import Parameter, Signature
+from derive.emit.st.expression import literal
+from derive.emit.st.layout import packed
+from derive.emit.st.names import joined
+from derive.emit.st.shared import method_name
+from derive.ir import roots
+from derive.ir.constants import (
+    FINISHED,
+    TRIALS,
+)
+from derive.ir.program import (
+    FindRoot,
+    Program,
+)
+from derive.ir.symbols import (
+    PLACE,
+)
+
+TRY_AT = "TryAt"
+_STACKED, _PLACES = 60, 48
+SEARCH = {
+    "cells": roots.CELLS,
+    "closing": roots.CLOSING,
+    "trials": TRIALS - roots.RESERVE,
+    "finished": FINISHED,
+    "stacked": _STACKED,
+    "places": _PLACES,
+    "aside": literal(roots.ASIDE),
+    "near_zero": literal(roots.NEAR_ZERO),
+    "vanishing": literal(roots.VANISHING),
+    "touched": literal(roots.TOUCHED),
+    "finest": literal(roots.FINEST),
+    "seam": literal(roots.SEAM),
+    "turned": literal(roots.TURNED),
+    "narrow": literal(roots.NARROW),
+    "rim": literal(roots.RIM),
+    "gap": literal(roots.GAP),
+    "flat": literal(roots.FLAT),
+}
+"""The constants of a search, as the text reads them."""
+
+
+@dataclass(frozen=True)
+class SearchText:
+    """What the two methods are made of."""
+
+    given: tuple[str, ...]
+    """What a trial is given, as the search names it."""
+    columns: int
+    """How many numbers a trial says."""
+    directions: int
+    tried_outputs: tuple[str, ...]
+    try_call: str
+    finish_call: str
+    success: str
+    nothing: str
+
+
+def search_in(program: Program) -> FindRoot | None:
+    """The search that a program is, if it is one."""
+    return next((s for s in program.body if isinstance(s, FindRoot)), None)
+
+
+def try_at_signature(search: FindRoot) -> Signature:
+    """The method that tries a place of a cell."""
+    inputs = {"dBase": "LREAL", "dScale": "LREAL", "xCurved": "BOOL", "dS": "LREAL", "dFreed": "LREAL", "dAngle": "LREAL"}
+    arrays = {"aGiven": len(_given(search)), "aSaid": len(search.trial.outputs)}
+    parameters = [Parameter("VAR_INPUT", name, kind) for name, kind in inputs.items()]
+    parameters += [Parameter("VAR_IN_OUT", name, f"ARRAY[1..{size}] OF LREAL") for name, size in arrays.items()]
+    return Signature(TRY_AT, "", tuple(parameters), "PRIVATE")
+
+
+def search_text(search: FindRoot) -> SearchText:
+    """The parts of both methods."""
+    given = _given(search)
+    numbers = {name: f"aGiven[{k}]" for k, name in enumerate(given, 1)}
+    cell = {"tried": "place", "side": "SEL(xCurved AND (dS < 0.0), 1.0, -1.0)", "freed": "dFreed", "freed_angle": "dAngle"}
+    root = {"tried": "places[nearest, 1]", "side": "places[nearest, 2]", "freed": "places[nearest, 3]"}
+    root |= {"freed_angle": "places[nearest, 4]"}
+    outputs = [joined(o.name) for o in search.trial.outputs]
+    found = [joined(o.name) for o in search.finish.outputs]
+    targets = [joined(n.name) for n in search.names]
+    return SearchText(
+        given=tuple(given),
+        columns=len(outputs),
+        directions=(len(outputs) - 4) // 2,
+        tried_outputs=tuple(outputs),
+        try_call=_call(search.trial, _arguments(search, search.trial, cell | numbers), outputs),
+        finish_call=_call(search.finish, _arguments(search, search.finish, root), found),
+        success=f"{targets[0]} := 1.0;",
+        nothing="\n".join(f"{t} := 0.0;" for t in targets),
+    )
+
+
+def _given(search: FindRoot) -> list[str]:
+    return [joined(s.name) for s in search.given(search.trial) if s not in PLACE]
+
+
+def _arguments(search: FindRoot, program: Program, places: Mapping[str, str]) -> list[str]:
+    """What a program is given: a part of the place, or an argument of the search by its name."""
+    found = []
+    for s in search.given(program):
+        name = joined(s.name)
+        found.append(f"{name} := {places.get(s.name, places.get(name, name))}")
+    return found
+
+
+def _call(program: Program, arguments: Sequence[str], outputs: Sequence[str]) -> str:
+    lines = [*packed([f"{a}," for a in arguments]), *packed([f"{o} => {o}," for o in outputs])]
+    lines[-1] = lines[-1].removesuffix(",") + ");"
+    return "\n".join([f"{method_name(program)}(", *(f"  {line}" for line in lines)])

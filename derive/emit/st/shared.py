@@ -1,0 +1,70 @@
+"""Programs that several methods share: each is a private method, and a call of it is a statement.
+
+Its arguments are inputs, its outputs outputs. What stands in a structure (`a.a0`) is handed on with the whole of it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+
+import sympy as sp
+
+from derive.emit.st.contract import Contract, Parameter, Signature
+from derive.emit.st.expression import StructuredText
+from derive.emit.st.layout import indented, packed
+from derive.emit.st.names import capitalized, joined
+from derive.emit.st.refusal import Refusal
+from derive.ir.program import Call, Program, Status
+
+OUTCOME = "outcome"
+"""The variable that holds what a call answered."""
+
+
+def method_name(program: Program) -> str:
+    """`find_platform` → `FindPlatform`."""
+    return capitalized(program.name)
+
+
+def signature_of(program: Program, spelled: Mapping[str, str], contract: Contract) -> Signature:
+    """The private method of a shared program, given the spelling of what all methods can read."""
+    parts = {spelled.get(s.name, s.name) for s in program.inputs}
+    whole = {re.split(r"\W", text)[0] for text in parts if not text.isidentifier()}
+    axes = contract.signatures["Jacobian"].parameters[1]
+    if not whole <= {axes.name}:
+        raise TypeError(f"{program.name}: a shared program reads axis values and its own arguments, not {sorted(whole)}")
+    arguments = [Parameter("VAR_INPUT", joined(s.name), "LREAL") for s in program.inputs if s.name not in spelled]
+    results = [Parameter("VAR_OUTPUT", joined(o.name), "LREAL") for o in program.outputs]
+    given = (axes, *arguments) if whole else tuple(arguments)
+    return Signature(method_name(program), contract.spelling["types"]["error"], (*given, *results), "PRIVATE")
+
+
+def own_names(program: Program, spelled: Mapping[str, str]) -> dict[str, str]:
+    """How a shared program spells its arguments and outputs: they are parameters of its method."""
+    own = [s.name for s in program.inputs if s.name not in spelled] + [o.name for o in program.outputs]
+    return {name: joined(name) for name in own}
+
+
+def call_lines(call: Call, printer: StructuredText, refusal: Refusal) -> Iterator[str]:
+    """Call the method, and hand its refusal on."""
+    arguments = list(dict.fromkeys(_argument(name, value, printer) for name, value in call.given))
+    results = [f"{joined(name.name)} => {printer.name(name)}" for name in call.names]
+    yield from _packed(f"{OUTCOME} := {method_name(call.program)}(", arguments, results)
+    yield f"IF {OUTCOME} <> {refusal.errors[Status.OK.name]} THEN"
+    yield from indented(refusal.answering(OUTCOME))
+    yield "END_IF"
+
+
+def _argument(name: sp.Symbol, value: sp.Expr, printer: StructuredText) -> str:
+    text = printer.print(value)
+    if value == name and "." in text:
+        whole = text.split(".")[0]
+        return f"{whole} := {whole}"
+    return f"{joined(name.name)} := {text}"
+
+
+def _packed(head: str, arguments: Sequence[str], results: Sequence[str]) -> list[str]:
+    """Inputs and outputs on lines of their own."""
+    lines = [*packed([f"{a}," for a in arguments]), *packed([f"{r}," for r in results])]
+    lines[-1] = lines[-1].removesuffix(",") + ");"
+    return [head, *indented(indented(lines))]

@@ -1,0 +1,123 @@
+"""The edges of a program: axis values to joint values and back, periods, and the checks of what comes in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, sine
+from derive.description.mechanism import Joint, Mechanism
+from derive.ir.constants import (
+    DEGREE,
+    LARGEST,
+)
+from derive.ir.primitives import (
+    Atan2,
+    NearestPeriod,
+    Select,
+)
+from derive.ir.program import (
+    TURN_NOTE,
+    Let,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+
+
+def finite(symbols: Sequence[sp.Symbol]) -> tuple[Require, ...]:
+    """Every input that is read must be a number of reasonable size."""
+    conditions = [sp.Le(sp.Abs(s), LARGEST) for s in symbols]
+    return (Require(sp.And(*conditions), Status.BAD_INPUT, "numbers of reasonable size"),) if conditions else ()
+
+
+def joint_lets(mechanism: Mechanism) -> tuple[Let, ...]:
+    """Joint values from axis values, in radians and lengths."""
+    lets: list[Let] = []
+    for joint in mechanism.joints:
+        motor = (joint.axis - joint.offset) * joint.unit
+        lets += _motor_and_joint(motor, joint.motor, joint.symbol, joint.coupling)
+    return tuple(lets)
+
+
+def _motor_and_joint(value: sp.Expr, motor: sp.Symbol, joint: sp.Symbol, coupling: sp.Expr) -> list[Let]:
+    if coupling == 0:
+        return [Let(joint, value), Let(motor, joint)]
+    return [Let(motor, value), Let(joint, motor + coupling)]
+
+
+def reference_lets(mechanism: Mechanism) -> tuple[Let, ...]:
+    """Joint values at the reference: `free_a1`, used where nothing else determines the joint."""
+    table = {j.motor: _reference_motor(j) for j in mechanism.joints}
+    lets: list[Let] = []
+    for joint in mechanism.joints:
+        motor = (joint.reference - joint.offset) * joint.unit
+        lets += _motor_and_joint(motor, _reference_motor(joint), free(joint), joint.coupling.xreplace(table))
+    return tuple(lets)
+
+
+def _reference_motor(joint: Joint) -> sp.Symbol:
+    return real(f"ref_motor_{joint.key}")
+
+
+def free(joint: Joint) -> sp.Symbol:
+    """The joint value at the reference."""
+    return real(f"free_{joint.key}")
+
+
+def axis_lets(joint: Joint) -> tuple[Let, ...]:
+    """The axis value of a solved joint: period chosen, offset added, coupling taken back."""
+    shift = joint.offset - joint.coupling / joint.unit
+    motor = Let(joint.motor, (joint.axis - joint.offset) * joint.unit)
+    if not joint.is_angle:
+        return (Let(joint.axis, joint.symbol + shift), motor)
+    direction = Atan2(sine(joint.symbol), cosine(joint.symbol)) / DEGREE + shift
+    if not joint.multi_turn:
+        return (Let(joint.axis, direction), motor)
+    near = real(f"near_{joint.key}")
+    return (
+        *_near(joint, near),
+        Let(joint.axis, NearestPeriod(direction, near), f"{joint.name}{TURN_NOTE}"),
+        motor,
+    )
+
+
+def _near(joint: Joint, near: sp.Symbol) -> tuple[Let, ...]:
+    """The axis value that the period is chosen nearest to: commanded turn, middle of a range with one value inside, or reference.
+
+    Limits never choose again: in a wider range the other value inside may be a step away. The reference is compared joint
+    by joint: with gear coupling an axis moves with its neighbours.
+    """
+    shift = -joint.coupling / joint.unit
+    reference = joint.reference if joint.coupling == 0 else free(joint) / joint.unit + joint.offset + shift
+    single = sp.Gt(real(f"single_{joint.key}"), 0)
+    open_value = real(f"open_{joint.key}")
+    commanded = Select(sp.Gt(joint.turn, 0), 360 * joint.turn - 360, 360 * joint.turn)
+    return (
+        Let(open_value, Select(single, real(f"mid_{joint.key}"), reference), f"{joint.name}: where its turn is open"),
+        Let(near, Select(sp.Gt(sp.Abs(joint.turn), 0), commanded, open_value)),
+    )
+
+
+def plain_angle(joint: Joint) -> Let:
+    """The joint value with its turns, for equations in which turns count."""
+    shift = joint.offset - joint.coupling / joint.unit
+    return Let(joint.symbol, (joint.axis - shift) * joint.unit, f"{joint.name}: turns count from here on")
+
+
+def frozen_lets(joint: Joint) -> tuple[Statement, ...]:
+    """A joint kept at its reference: its value, sine and cosine, and its axis value."""
+    shift = joint.offset - joint.coupling / joint.unit
+    axis = joint.reference if joint.coupling == 0 else free(joint) / joint.unit + shift
+    lets: list[Statement] = [
+        Let(joint.symbol, free(joint), f"{joint.name}: frozen at the reference"),
+        Let(joint.axis, axis),
+        Let(joint.motor, (joint.axis - joint.offset) * joint.unit),
+    ]
+    if joint.is_angle:
+        lets += [Let(cosine(joint.symbol), sp.cos(joint.symbol)), Let(sine(joint.symbol), sp.sin(joint.symbol))]
+    return tuple(lets)

@@ -1,0 +1,166 @@
+"""Both-sided splits of a chain: T = L M S, so that L^-1 T S^-1 = M holds for every part M of the chain.
+
+Positions are split once, before anything is known: behind the flange part S that no joint moves the origin of (the
+wrist centre is what position and rotation say together), and in front of the part L up to the first joint. An arm whose
+first joints meet in a point is the same seen from its flange: T^-1 = S^-1 M^-1 L^-1. For rotations see `rotations`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.algebra.angle_sums import name_of
+from derive.algebra.normal_form import cosine, is_compound, polynomial, sine
+from derive.equations.problem import Equation
+from derive.geometry.frames import Chain, Factor, Motion
+from derive.geometry.pose import pose_of
+from derive.ir.program import (
+    Let,
+)
+from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    real,
+)
+
+
+def is_spatial(chain: Chain) -> bool:
+    """Whether a chain turns about more than one axis."""
+    return len({f.axis for f in chain.factors if f.motion is Motion.TURN}) > 1
+
+
+@dataclass(frozen=True)
+class Target:
+    """A commanded point: its coordinates, and the names of what they are made of."""
+
+    point: tuple[sp.Expr, ...]
+    lets: tuple[Let, ...] = ()
+
+
+@dataclass(frozen=True)
+class Commanded:
+    """The commanded rotation, and which of its columns are followed."""
+
+    rotation: sp.Matrix
+    columns: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """What the equations of a chain are to be solved for, and what their normal form needs."""
+
+    angles: tuple[sp.Symbol, ...]
+    lengths: tuple[sp.Symbol, ...]
+    units: tuple[sp.Symbol, ...]
+    signs: tuple[sp.Symbol, ...]
+
+    def form(self, expression: sp.Expr) -> sp.Expr:
+        """The normal form."""
+        return polynomial(expression, self.units, self.signs)
+
+    def of(self, form: sp.Expr) -> set[sp.Symbol]:
+        """The unknowns in a normal form."""
+        present: set[sp.Symbol] = set(form.free_symbols)
+        angles = {a for a in self.angles if present & {a, sine(a), cosine(a)}}
+        return angles | (set(self.lengths) & present)
+
+
+def split_positions(chain: Chain, commanded: Commanded, unknowns: Unknowns) -> tuple[Equation, ...]:
+    """The position equations of a chain, at the split that leaves some unknown alone, else those of the whole chain.
+
+    Where none does, the chain is looked at from its flange: then those of the point that the first joints turn about.
+    """
+    point = [real(c) for c in COORDINATE_NAMES]
+    factors, target = chain.factors, Target(tuple(point))
+    if commanded.columns:
+        factors, target = _behind_the_wrist(chain, sp.Matrix(point), commanded, unknowns)
+    found = _split(factors, target, unknowns)
+    if len(commanded.columns) < 3 or _alone(found, unknowns):
+        return found
+    turned = _split(*_before_the_shoulder(chain, sp.Matrix(point), commanded, unknowns), unknowns)
+    return turned if _alone(turned, unknowns) else found
+
+
+def _split(factors: Sequence[Factor], target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:
+    """The equations of a point behind the first joint, if more of them leave some unknown alone than of the whole chain."""
+    first = next(i for i, f in enumerate(factors) if f.amount.free_symbols & {*unknowns.angles, *unknowns.lengths})
+    whole, behind = _equations(factors, -1, target, unknowns), _equations(factors, first, target, unknowns)
+    return behind if _alone(behind, unknowns) > _alone(whole, unknowns) else whole
+
+
+def _alone(equations: Sequence[Equation], unknowns: Unknowns) -> int:
+    """How many equations leave some unknown alone."""
+    return sum(len(unknowns.of(e.expression)) == 1 for e in equations)
+
+
+def _behind_the_wrist(
+    chain: Chain, point: sp.Matrix, commanded: Commanded, unknowns: Unknowns
+) -> tuple[tuple[Factor, ...], Target]:
+    """The part of the chain to the point that the commanded pose fixes and the fewest joints move."""
+    best, target = chain.factors, Target(tuple(point))
+    fewest = len(_movers(chain, unknowns))
+    for cut in reversed([i for i, f in enumerate(chain.factors) if f.motion is Motion.TURN]):
+        rest = pose_of(Chain(chain.factors[cut:]))
+        seen = [unknowns.form(v) for v in -(rest.rotation.T * rest.position)]
+        if any(unknowns.of(v) for v in seen) or any(v != 0 for i, v in enumerate(seen) if i not in commanded.columns):
+            break  # its place in what is commanded of the flange is no longer fixed
+        front = Chain(chain.factors[:cut])
+        if len(_movers(front, unknowns)) < fewest:
+            best, target, fewest = front.factors, _wrist(point, commanded.rotation, seen), len(_movers(front, unknowns))
+    return best, target
+
+
+def _before_the_shoulder(
+    chain: Chain, point: sp.Matrix, commanded: Commanded, unknowns: Unknowns
+) -> tuple[tuple[Factor, ...], Target]:
+    """The chain from its flange to the point of the base that the most first joints do not move, seen from the flange."""
+    end = 0
+    for cut in range(1, len(chain.factors)):
+        moved = pose_of(Chain(chain.factors[:cut])).position
+        if any(unknowns.of(unknowns.form(v)) for v in moved):
+            break
+        end = cut
+    front, rest = pose_of(Chain(chain.factors[:end])), chain.factors[end:]
+    seen = commanded.rotation.T * (front.position - point)
+    lets = tuple(Let(real(f"shoulder_{c}"), v) for c, v in zip(COORDINATE_NAMES, seen, strict=True))
+    return tuple(f.inverse() for f in reversed(rest)), Target(tuple(let.name for let in lets), lets)
+
+
+def _movers(chain: Chain, unknowns: Unknowns) -> set[sp.Symbol]:
+    """The joints that move the end point of a chain."""
+    moved: set[sp.Symbol] = set(pose_of(chain).position.free_symbols)
+    return moved & {*unknowns.angles, *unknowns.lengths}
+
+
+def _wrist(point: sp.Matrix, rotation: sp.Matrix, seen: Sequence[sp.Expr]) -> Target:
+    moved = point + rotation * sp.Matrix(seen)
+    lets = []
+    for c, value in zip(COORDINATE_NAMES, moved, strict=True):
+        note = "the point that the last joints turn about" if c == "x" else ""
+        lets.append(Let(real(f"wrist_{c}"), value, note))
+    if not any(is_compound(let.value) for let in lets):
+        return Target(tuple(moved))
+    return Target(tuple(let.name for let in lets), tuple(lets))
+
+
+def _equations(factors: Sequence[Factor], first: int, target: Target, unknowns: Unknowns) -> tuple[Equation, ...]:
+    """The equations of the point seen from behind the joint at `first` and what is fixed to it; -1: from the base."""
+    moving = {*unknowns.angles, *unknowns.lengths}
+    end = first + 1
+    while first >= 0 and end < len(factors) and not factors[end].amount.free_symbols & moving:
+        end += 1
+    front, rest = pose_of(Chain(tuple(factors[:end]))), pose_of(Chain(tuple(factors[end:])))
+    seen = front.rotation.T * (sp.Matrix(target.point) - front.position)
+    word = "" if first < 0 else f"_from_{_movers_name(factors[first], unknowns)}"
+    found = []
+    for c, left, right in zip(COORDINATE_NAMES, seen, rest.position, strict=True):
+        form = unknowns.form(right - left)
+        used = tuple(let for let in target.lets if let.name in form.free_symbols)
+        found.append(Equation(f"{c}{word}", form, used))
+    return tuple(found)
+
+
+def _movers_name(factor: Factor, unknowns: Unknowns) -> str:
+    return name_of(tuple((s, 1) for s in (*unknowns.angles, *unknowns.lengths) if s in factor.amount.free_symbols))

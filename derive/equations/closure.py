@@ -1,0 +1,288 @@
+"""The closure equations of a mechanism, in the coordinates of its task.
+
+A chain gives f(q) - x = 0; a mechanism that states equations gives these. The commanded turn enters as a
+known angle `heading`, through its sine and cosine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cache
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, is_compound, polynomial, reduce_units, sine, split_known
+from derive.description.mechanism import (
+    DescriptionError,
+    Joint,
+    Mechanism,
+    Rod,
+    Role,
+    Turning,
+)
+from derive.equations.chain_splits import Commanded, Unknowns, is_spatial, split_positions
+from derive.equations.problem import Equation
+from derive.geometry.frames import Chain, Factor, Motion, Txyz
+from derive.geometry.pose import pose_of
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.program import (
+    Let,
+)
+from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    OFFSET,
+    ROTATION_ENTRIES,
+    real,
+)
+
+
+@dataclass(frozen=True)
+class Closure:
+    """Equations, what they name, and what of the position is met and not solved for."""
+
+    equations: tuple[Equation, ...]
+    arguments: tuple[sp.Expr, ...]
+    """Arguments of sines and cosines, where sums of parallel angles can be read."""
+    lets: tuple[Let, ...] = ()
+    plane: sp.Expr | None = None
+    """The z that a planar machine has."""
+    turns: tuple[Factor, ...] = ()
+    """The turns whose product is the commanded rotation, where more of it is followed than a turn about z."""
+    columns: tuple[int, ...] = (0, 1, 2)
+    """The columns of the commanded rotation that are followed."""
+
+
+def signs_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """The parameters that are +1 or -1, and those that are 0 or 1."""
+    return tuple(p.symbol for p in mechanism.parameters if p.role in (Role.SIGN, Role.FLAG))
+
+
+def fixed_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """The angles of the machine that never move: its angle parameters, in degrees."""
+    return tuple(p.symbol for p in mechanism.parameters if p.role is Role.ANGLE)
+
+
+def fixed_lets(mechanism: Mechanism) -> tuple[Let, ...]:
+    """Their cosines and sines, and the roots that are made of parameters alone."""
+    functions = ((cosine, sp.cos), (sine, sp.sin))
+    angles = tuple(Let(f(a), g(a * DEGREE)) for a in fixed_angles(mechanism) for f, g in functions)
+    return (*angles, *(let for _, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters))))
+
+
+@cache
+def _fixed_roots(equations: tuple[sp.Expr, ...], parameters: tuple[sp.Symbol, ...]) -> tuple[tuple[sp.Expr, Let], ...]:
+    """The square roots in the equations that are made of parameters alone, inner ones first, each with its name.
+
+    What a name hides is not expanded: a difference of squares stays a product of lengths.
+    """
+    powers = {p for e in equations for p in sp.sympify(e).atoms(sp.Pow) if p.exp == sp.Rational(1, 2)}
+    roots = [r for r in powers if r.free_symbols and r.free_symbols <= set(parameters)]
+    found: list[tuple[sp.Expr, Let]] = []
+    for number, root in enumerate(sorted(roots, key=lambda r: (sp.count_ops(r), str(r))), 1):
+        radicand = sp.factor(root.base.xreplace({inner: let.name for inner, let in found}))
+        radicand = radicand.xreplace({s: real(s.name) for s in radicand.free_symbols})  # or it became a root of every factor
+        found.append((root, Let(real(f"fixed_length_{number}"), sp.sqrt(radicand), "a length of the machine")))
+    return tuple(found)
+
+
+def all_angles(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """Every angle whose sine and cosine have names."""
+    return (*angles_of(mechanism), *fixed_angles(mechanism))
+
+
+def with_fixed_names(mechanism: Mechanism, expression: sp.Expr) -> sp.Expr:
+    """The expression with the sines and cosines of fixed angles, and fixed roots, under their names."""
+    functions = ((cosine, sp.cos), (sine, sp.sin))
+    table = {g(a * DEGREE): f(a) for a in fixed_angles(mechanism) for f, g in functions}
+    for root, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters)):
+        table[root] = let.name
+    return sp.sympify(expression).xreplace(table)
+
+
+def angles_of(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    """The joints that turn."""
+    return tuple(j.symbol for j in mechanism.joints if j.is_angle)
+
+
+def flange_flips(chain: Chain) -> tuple[Chain, tuple[Factor, ...]]:
+    """The chain without its last flips, and these flips: a fixed rotation behind the joints."""
+    factors = list(chain.factors)
+    flips: list[Factor] = []
+    while factors and factors[-1].motion is Motion.FLIP:
+        flips.insert(0, factors.pop())
+    if any(f.motion is Motion.FLIP for f in factors):
+        raise DescriptionError("a flip must stand at the end of the chain")
+    return Chain(tuple(factors)), tuple(flips)
+
+
+def flange_rotation(chain: Chain) -> sp.ImmutableMatrix:
+    """The fixed rotation behind the last joint."""
+    return pose_of(Chain(flange_flips(chain)[1])).rotation
+
+
+def pose_closure(mechanism: Mechanism) -> Closure:
+    """The closure of a commanded pose."""
+    if mechanism.chain is None:
+        return _stated_closure(mechanism, {})
+    if is_spatial(mechanism.chain) and mechanism.task.turning is not Turning.ABOUT_Z:
+        return _spatial_closure(mechanism, mechanism.chain, mechanism.joints)
+    pose = pose_of(mechanism.chain)
+    closure = _position_closure(mechanism, pose.position)
+    if mechanism.task.turning is Turning.NONE:
+        return closure
+    argument = heading_of(mechanism.chain)
+    turns = (
+        _equation(mechanism, "cosine of the heading", sp.cos(argument) - real("cos_heading")),
+        _equation(mechanism, "sine of the heading", sp.sin(argument) - real("sin_heading")),
+    )
+    arguments = tuple(dict.fromkeys((*closure.arguments, argument)))
+    return Closure(closure.equations + turns, arguments, closure.lets, closure.plane)
+
+
+def closure_at(mechanism: Mechanism, known: Joint) -> Closure:
+    """The closure of a commanded pose with one joint known."""
+    assert mechanism.chain is not None
+    return _spatial_closure(mechanism, mechanism.chain, tuple(j for j in mechanism.joints if j != known))
+
+
+def _spatial_closure(mechanism: Mechanism, chain: Chain, moving: tuple[Joint, ...]) -> Closure:
+    """A chain that turns about several axes: its position equations are split, its rotation is left to the solver."""
+    angles, lengths = (tuple(j.symbol for j in moving if j.is_angle is kind) for kind in (True, False))
+    unknowns = Unknowns(angles, lengths, all_angles(mechanism), signs_of(mechanism))
+    follows = mechanism.task.turning is not Turning.NONE
+    columns = (2,) if mechanism.task.turning is Turning.DIRECTION else (0, 1, 2)
+    commanded = Commanded(sp.Matrix(3, 3, ROTATION_ENTRIES), columns if follows else ())
+    equations = split_positions(chain, commanded, unknowns) if mechanism.task.position else ()
+    pose = pose_of(chain)
+    arguments = dict.fromkeys((*_arguments(pose.position), *(t.amount for t in pose.turns)))
+    return Closure(equations, tuple(arguments), turns=pose.turns if follows else (), columns=columns)
+
+
+def heading_of(chain: Chain) -> sp.Expr:
+    """The one turn about z that a chain makes in front of its flange."""
+    bare, _ = flange_flips(chain)
+    turns = pose_of(bare).turns
+    if len(turns) != 1 or turns[0].axis != 2:
+        raise DescriptionError("the chain must turn the flange about z alone: its rotation is not one turn about z")
+    return turns[0].amount
+
+
+def offset_closure(mechanism: Mechanism, unknown: tuple[Joint, ...]) -> Closure:
+    """The closure of the position of a point off the flange; joints that are not unknown are frozen."""
+    if mechanism.chain is None:
+        return _stated_closure(mechanism, dict(zip(COORDINATE_NAMES, OFFSET, strict=True)))
+    factors = (*mechanism.chain.factors, *Txyz(*OFFSET).factors)
+    symbols = {j.symbol for j in unknown}
+    last = max((i for i, f in enumerate(factors) if f.motion is Motion.TURN and f.amount.free_symbols & symbols), default=-1)
+    tool = pose_of(Chain(factors[last + 1 :])).position
+    lets: list[Let] = []
+    entries = [_named_tool(mechanism, entry, f"tool_{c}", symbols, lets) for entry, c in zip(tool, COORDINATE_NAMES, strict=True)]
+    seen = Chain(factors[: last + 1]) * Txyz(*entries)
+    if is_spatial(mechanism.chain):
+        return replace(_spatial_closure(mechanism, seen, unknown), lets=tuple(lets))
+    pose = pose_of(seen)
+    closure = _position_closure(mechanism, pose.position)
+    return Closure(closure.equations, closure.arguments, tuple(lets), closure.plane)
+
+
+def _named_tool(
+    mechanism: Mechanism, entry: sp.Expr, name: str, unknown: set[sp.Symbol], lets: list[Let]
+) -> sp.Expr:
+    """The entry with its known part under one name: the solver need not look into it."""
+    form = polynomial(entry, angles_of(mechanism), signs_of(mechanism))
+    moving, known = split_known(form, unknown)
+    if not is_compound(known):
+        return moving + known
+    lets.append(Let(real(name), known, "the point seen from the last moving joint"))
+    return moving + real(name)
+
+
+def _position_closure(mechanism: Mechanism, position: sp.ImmutableMatrix) -> Closure:
+    equations: list[Equation] = []
+    plane: sp.Expr | None = None
+    for value, name in zip(position, COORDINATE_NAMES, strict=True):
+        if name in mechanism.task.position:
+            equations.append(_equation(mechanism, name, value - real(name)))
+        elif mechanism.task.position:
+            plane = sp.sympify(value)
+            if plane.free_symbols & {j.symbol for j in mechanism.joints}:
+                raise DescriptionError(f"{name} is not commanded but the joints move it")
+    return Closure(tuple(equations), _arguments(position), (), plane)
+
+
+def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: str = "span") -> Closure:
+    """The stated equations; with an offset they hold for the flange, which keeps its orientation.
+
+    `known` says what is known of a rod: its "span" where the joints are wanted, its "pivot" where the position is.
+    """
+    lets = tuple(Let(real(f"flange_{c}"), real(c) - o, "the flange behind the point") for c, o in offset.items())
+    table = {real(c): real(f"flange_{c}") for c in offset}
+    wanted = {j.symbol for j in mechanism.joints} if known == "span" else set(map(real, COORDINATE_NAMES))
+    equations = [
+        _equation(mechanism, _label(e, number), sp.sympify(e).xreplace(table))
+        for number, e in enumerate(mechanism.closure, 1)
+    ]
+    equations += [_rod_equation(mechanism, rod, table, (known, wanted)) for rod in mechanism.rods]
+    plane = None if "z" in mechanism.task.position else offset.get("z", sp.Integer(0))
+    return Closure(tuple(equations), _arguments(mechanism.equations), lets, plane)
+
+
+def position_closure(mechanism: Mechanism) -> Closure:
+    """The stated equations as equations in the position, the joints known."""
+    return _stated_closure(mechanism, {}, "pivot")
+
+
+def _rod_equation(
+    mechanism: Mechanism, rod: Rod, table: dict[sp.Symbol, sp.Symbol], sought: tuple[str, set[sp.Symbol]]
+) -> Equation:
+    """|plate - base|^2 = length^2, the known part of every coordinate under one name."""
+    word, wanted = sought
+    unknown = {s for v in wanted for s in (v, sine(v), cosine(v))}
+    lets: list[Let] = []
+    total: sp.Expr = -(rod.length**2)
+    for name, plate, base in zip(COORDINATE_NAMES, rod.plate, rod.base, strict=False):
+        between = with_fixed_names(mechanism, (plate - base).xreplace(table))
+        form = polynomial(between, all_angles(mechanism), signs_of(mechanism))
+        moving, known = split_known(form, unknown)
+        side = 1 if word == "span" else -1  # a span is seen from the base, a pivot is where the rod is held
+        known = side * known
+        if is_compound(known):
+            lets.append(Let(real(f"{word}_{rod.name}_{name}"), known, f"rod {rod.name}"))
+            known = lets[-1].name
+        total += (moving + side * known) ** 2
+    expression = reduce_units(total, all_angles(mechanism), signs_of(mechanism))
+    return Equation(f"rod {rod.name}", expression, tuple(lets), _rod_scales(mechanism, rod))
+
+
+def _rod_scales(mechanism: Mechanism, rod: Rod) -> dict[sp.Symbol, sp.Expr]:
+    """2 * length * how fast an end of the rod moves with a joint or with the position, where that is a constant."""
+    scales: dict[sp.Symbol, sp.Expr] = {}
+    for symbol in (*(j.symbol for j in mechanism.joints), *(real(c) for c in COORDINATE_NAMES)):
+        rates = [sp.diff(p - b, symbol) for p, b in zip(rod.plate, rod.base, strict=True)]
+        square = polynomial(with_fixed_names(mechanism, sum(r**2 for r in rates)), all_angles(mechanism), signs_of(mechanism))
+        if square != 0 and not square.free_symbols & set(_moving_symbols(mechanism)):
+            scales[symbol] = 2 * rod.length * sp.sqrt(sp.factor(square))
+    return scales
+
+
+def _moving_symbols(mechanism: Mechanism) -> tuple[sp.Symbol, ...]:
+    joints = [j.symbol for j in mechanism.joints]
+    return (*joints, *(f(a) for a in joints for f in (sine, cosine)), *(real(c) for c in COORDINATE_NAMES))
+
+
+def _label(equation: sp.Expr, number: int) -> str:
+    held = [c for c in COORDINATE_NAMES if real(c) in sp.sympify(equation).free_symbols]
+    return held[0] if len(held) == 1 else f"closure_{number}"
+
+
+def _arguments(expressions: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
+    found = sp.Matrix(list(expressions)).atoms(sp.sin, sp.cos)
+    return tuple(sorted({f.args[0] for f in found}, key=sp.default_sort_key))
+
+
+def _equation(mechanism: Mechanism, label: str, expression: sp.Expr) -> Equation:
+    return Equation(label, polynomial(with_fixed_names(mechanism, expression), all_angles(mechanism), signs_of(mechanism)))
+

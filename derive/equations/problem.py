@@ -1,0 +1,175 @@
+"""What the solver works on: unknowns and equations; and what a subproblem answers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, reduce_units, sine
+from derive.geometry.frames import Factor
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.program import (
+    Let,
+    Statement,
+)
+
+
+@dataclass(frozen=True)
+class Equation:
+    """expression = 0. `lets` name what it refers to; they are emitted when the equation is used."""
+
+    label: str
+    expression: sp.Expr
+    lets: tuple[Let, ...] = ()
+    scales: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """The largest slope by an unknown, where it is made of parameters alone: margins are over it."""
+    is_length: bool = True
+    """Whether its terms are lengths; those of a rotation are numbers."""
+
+
+@dataclass(frozen=True)
+class Legs:
+    """The triangle of a two-root step that aims u at a point.
+
+    along cos u + across sin u = beside, along sin u - across cos u = root, and root² + beside² = distance².
+    """
+
+    root: sp.Symbol
+    """sigma times a root."""
+    square: sp.Expr
+    """What the root is taken of."""
+    beside: sp.Expr
+    distance: sp.Expr
+    along: sp.Expr
+    across: sp.Expr
+
+    def renamed(self, names: Mapping[sp.Symbol, sp.Expr]) -> Legs:
+        """The same with other names."""
+        return Legs(*(getattr(self, f.name).xreplace(names) for f in fields(self)))
+
+
+@dataclass(frozen=True)
+class Slope:
+    """The derivative of a two-root step by its unknown, over a scale of parameters: its sign is the branch."""
+
+    sigma: sp.Symbol
+    value: sp.Expr
+    """Equals sigma times something not negative at every solution."""
+    scale: sp.Expr
+    reach: tuple[sp.Expr, sp.Expr] | None = None
+    """(h, e) where the step has solutions for |e| <= h, for steps before it."""
+    legs: Legs | None = None
+    """Where the root, near zero, multiplies what rounding leaves of its radicand, for steps behind it."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """What must not vanish for `angle` to be determined, over a scale of parameters."""
+
+    angle: sp.Symbol
+    value: sp.Expr
+    scale: sp.Expr
+    word: str = "free"
+    """What happens where it vanishes: the angle is "free", or two solutions "meet" of which the machine has one."""
+
+    @property
+    def name(self) -> str:
+        """The name of the margin."""
+        return f"{self.word}_{self.angle.name}"
+
+
+@dataclass(frozen=True)
+class Binding:
+    """The answer of a subproblem: statements that bind unknowns, and where they lose or double their meaning."""
+
+    rule: str
+    unknowns: tuple[sp.Symbol, ...]
+    statements: tuple[Statement, ...]
+    slope: Slope | None = None
+    measure: Measure | None = None
+    new_equations: tuple[Equation, ...] = ()
+    residual: sp.Expr | None = None
+    """What vanishes if the equations it was solved from agree with each other, a square of a length."""
+    cosine_alone: bool = False
+
+    @property
+    def rank(self) -> tuple[bool, bool, bool, int]:
+        """Smaller is better: both functions known, a measure that cannot vanish, one root, short."""
+        size = sum(int(sp.count_ops(s.value)) for s in self.statements if isinstance(s, Let))
+        return (self.cosine_alone, self.measure is not None, self.slope is not None, size)
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Equations in unknown angles and lengths; everything else in them is known."""
+
+    angles: tuple[sp.Symbol, ...]
+    lengths: tuple[sp.Symbol, ...]
+    equations: tuple[Equation, ...]
+    units: tuple[sp.Symbol, ...]
+    """All angles, known ones too, whose sine and cosine symbols obey sin^2 + cos^2 = 1."""
+    free: Mapping[sp.Symbol, sp.Expr]
+    """The reference value of each angle, in radians, taken where nothing determines it."""
+    scale: sp.Expr
+    """A length of the machine, made of parameters only, never zero."""
+    signs: tuple[sp.Symbol, ...] = ()
+    positive: tuple[sp.Expr, ...] = ()
+    """Normal forms of the quantities whose negative mirror is excluded."""
+    pending: tuple[sp.Symbol, ...] = ()
+    """Angles that follow from a sum once its other terms are known: unknown, but nothing to solve for."""
+    is_overdetermined: bool = False
+    """Whether there is an equation too many, so that what is left over is a residual: two-root steps must not use it up."""
+    turns: tuple[Factor, ...] = ()
+    """The turns that the commanded rotation is the product of, for equations that are written when angles are known."""
+    rotation: tuple[sp.Symbol, ...] = ()
+    """The entries of the commanded rotation, by rows; none where it is not commanded."""
+    columns: tuple[int, ...] = (0, 1, 2)
+    """The columns of the commanded rotation that are followed."""
+    definitions: Mapping[sp.Symbol, sp.Expr] | None = None
+    """What known names stand for, as far as they are polynomials: for tests of zero."""
+
+    def scale_of(self, equation: Equation) -> sp.Expr:
+        """What the terms of an equation are compared with: a length of the machine, or one."""
+        return self.scale if equation.is_length else sp.Integer(1)
+
+    def atoms(self) -> tuple[sp.Symbol, ...]:
+        """Every symbol that is unknown: lengths, angles, their sines and cosines."""
+        angles = (*self.angles, *self.pending)
+        return (*self.lengths, *angles, *(f(a) for a in angles for f in (cosine, sine)))
+
+    def unknowns_of(self, expression: sp.Expr) -> tuple[sp.Symbol, ...]:
+        """The unknown angles and lengths that occur, in a fixed order."""
+        present = expression.free_symbols
+        angles = [a for a in (*self.angles, *self.pending) if present & {a, sine(a), cosine(a)}]
+        return (*(u for u in self.lengths if u in present), *angles)
+
+    def reduce(self, expression: sp.Expr) -> sp.Expr:
+        """The normal form of an expression with the known names written out: zero if and only if it is zero."""
+        definitions = self.definitions or {}
+        while expression.free_symbols & definitions.keys():
+            expression = expression.xreplace(dict(definitions))
+        return reduce_units(expression, self.units, self.signs)
+
+    def tidy(self, expression: sp.Expr) -> sp.Expr:
+        """The expression with the squares of signs written as one, names left as they are."""
+        return reduce_units(expression, (), self.signs)
+
+    def is_never_zero(self, expression: sp.Expr) -> bool:
+        """Whether an expression of known names cannot vanish for any legal machine and pose."""
+        reduced = self.reduce(expression)
+        return bool(reduced.is_nonzero or reduced.xreplace({DEGREE: sp.pi / 180}).is_nonzero)
+
+    def is_positive(self, value: sp.Expr) -> bool:
+        """Whether a value is a positive multiple of a quantity whose negative mirror is excluded, or of several."""
+        if all(factor in self.positive for factor in sp.Mul.make_args(value)):
+            return True
+        ratios = [sp.cancel(value / quantity).xreplace({DEGREE: sp.pi / 180}) for quantity in self.positive]
+        return any(ratio.is_number and ratio.is_positive for ratio in ratios)
+
+    def with_equations(self, equations: tuple[Equation, ...]) -> Problem:
+        """The same unknowns with other equations."""
+        return replace(self, equations=equations)

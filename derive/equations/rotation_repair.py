@@ -1,0 +1,92 @@
+"""A rotation that a caller gives: refused where it is none, repaired where it is one by few digits, otherwise used bit for bit.
+
+Frames come from single precision, too. The direction of the tool comes first: z is made of length one, x perpendicular to it
+and of length one, y = z × x. Asked once a call, before everything else; all other programs read a rotation that is one.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from derive.equations.axes import finite
+from derive.ir.constants import (
+    EXACT_ROTATION,
+    ROTATION,
+)
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    ROTATION_ENTRIES,
+    real,
+)
+
+_UNEVEN = "columns not of length one; was the frame converted from REAL?"
+_ASKEW = "columns not at right angles; was the frame converted from REAL?"
+_GIVEN = sp.Matrix(3, 3, ROTATION_ENTRIES)
+_COLUMNS = "xyz"
+_PAIRS = ((0, 1), (0, 2), (1, 2))
+
+
+@cache
+def rotation_program() -> Program:
+    """r11 … r33 as given → the same as they are used: of every mechanism that reads a rotation."""
+    columns = [_GIVEN[:, k] for k in range(3)]
+    sizes = [Let(real(f"uneven_{c}"), sp.Abs(v.dot(v) - 1)) for c, v in zip(_COLUMNS, columns, strict=True)]
+    angles = [Let(real(f"askew_{_COLUMNS[i]}{_COLUMNS[j]}"), sp.Abs(columns[i].dot(columns[j]))) for i, j in _PAIRS]
+    determinant = sum(columns[0][k] * columns[1].cross(columns[2])[k] for k in range(3))
+    is_exact = sp.And(*[sp.Le(let.name, EXACT_ROTATION) for let in (*sizes, *angles)])
+    lets, repaired = _repaired()
+    chosen = [
+        Let(real(f"made_{r.name}"), Select(is_exact, r, value))
+        for r, value in zip(ROTATION_ENTRIES, repaired, strict=True)
+    ]
+    body: tuple[Statement, ...] = (
+        *finite(ROTATION_ENTRIES),
+        *sizes,
+        _small(sizes, _UNEVEN),
+        *angles,
+        _small(angles, _ASKEW),
+        Require(sp.Gt(determinant, 0), Status.BAD_INPUT, "a right-handed frame"),
+        *lets,
+        *chosen,
+    )
+    return assemble("rotation", body, [Output(r.name, let.name) for r, let in zip(ROTATION_ENTRIES, chosen, strict=True)])
+
+
+def _small(errors: list[Let], reason: str) -> Require:
+    return Require(sp.And(*[sp.Le(let.name, ROTATION) for let in errors]), Status.BAD_INPUT, reason)
+
+
+def _repaired() -> tuple[list[Let], sp.Matrix]:
+    """The direction of z; what of x is perpendicular to it; and what is perpendicular to both: each over its length."""
+    x, z = _GIVEN[:, 0], _GIVEN[:, 2]
+    along_z, divisor_x = real("along_z"), real("divisor_x")
+    unit_z, across_z = (sp.Matrix([real(f"{word}_z{k}") for k in (1, 2, 3)]) for word in ("unit", "across"))
+    lets = [
+        *_length(z, "z", "the direction of the tool is kept"),
+        *(Let(n, v / real("divisor_z")) for n, v in zip(unit_z, z, strict=True)),
+        Let(along_z, x.dot(unit_z)),
+        *(Let(n, v - along_z * u) for n, v, u in zip(across_z, x, unit_z, strict=True)),
+        *_length(across_z, "x", "x is made perpendicular to it"),
+    ]
+    return lets, sp.Matrix.hstack(across_z / divisor_x, unit_z.cross(across_z) / divisor_x, unit_z)
+
+
+def _length(vector: sp.Matrix, word: str, note: str) -> tuple[Let, Let]:
+    """The length of a column and what may be divided by: nearly one, but of what is no rotation it may be nothing."""
+    length = real(f"length_{word}")
+    nonzero = Select(sp.Gt(length, sp.Rational(1, 2)), length, sp.Integer(1))
+    return Let(length, Root(vector.dot(vector)), note), Let(real(f"divisor_{word}"), nonzero)

@@ -1,0 +1,37 @@
+"""Sines and cosines under their names: `cos_a12` for the cosine of A1 + A2."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import sympy as sp
+
+from derive.algebra.angle_sums import name_of, terms_of
+from derive.algebra.normal_form import cosine, polynomial, sine
+from derive.description.mechanism import Mechanism
+from derive.equations.closure import angles_of, signs_of
+from derive.ir.program import (
+    Let,
+)
+from derive.ir.symbols import (
+    real,
+)
+
+
+def named_trigonometry(mechanism: Mechanism, values: Iterable[sp.Expr]) -> tuple[tuple[Let, ...], list[sp.Expr]]:
+    """The values with every sine and cosine under its name (`cos_a12`), and these names bound."""
+    values = [sp.sympify(v) for v in values]
+    lets: dict[sp.Symbol, Let] = {}
+    table: dict[sp.Expr, sp.Expr] = {}
+    angles = angles_of(mechanism)
+    for function in sorted(sp.Matrix(values).atoms(sp.sin, sp.cos), key=sp.default_sort_key):
+        terms = terms_of(sp.expand(function.args[0]), angles)
+        word = "sin" if isinstance(function, sp.sin) else "cos"
+        if terms is None:
+            table[function] = polynomial(function, angles, signs_of(mechanism))
+            lets.update({f(a): Let(f(a), g(a)) for a in angles for f, g in ((sine, sp.sin), (cosine, sp.cos))})
+        else:
+            name = real(f"{word}_{name_of(terms)}")
+            table[function] = name
+            lets[name] = Let(name, function)
+    return tuple(lets.values()), [v.xreplace(table) for v in values]

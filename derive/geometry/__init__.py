@@ -1,0 +1,1 @@
+"""Chains of turns and shifts, the pose that they make, vectors."""

@@ -1,0 +1,120 @@
+"""Chains of elementary frames: the geometry of a serial mechanism, written as a product.
+
+`Rz(A1) * Tx(link) * Rz(A2)` reads as it is drawn: turn about z, go along x, turn about z.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import sympy as sp
+
+
+class Motion(Enum):
+    """What an elementary frame does."""
+
+    TURN = "turn"
+    SHIFT = "shift"
+    FLIP = "flip"
+    """Half a turn where a flag (0 or 1) is set."""
+
+
+@dataclass(frozen=True)
+class Factor:
+    """One elementary frame: a motion about or along one axis (0, 1, 2 = x, y, z) by an amount (radians or length)."""
+
+    motion: Motion
+    axis: int
+    amount: sp.Expr
+
+    def matrix(self) -> sp.ImmutableMatrix:
+        """The homogeneous 4 x 4 matrix."""
+        rotation, position = sp.eye(3), sp.zeros(3, 1)
+        if self.motion is Motion.SHIFT:
+            position[self.axis] = self.amount
+        else:
+            rotation = self._rotation()
+        return sp.ImmutableMatrix(sp.Matrix.vstack(rotation.row_join(position), sp.Matrix([[0, 0, 0, 1]])))
+
+    def inverse(self) -> Factor:
+        """The frame that undoes it: half a turn undoes itself."""
+        return self if self.motion is Motion.FLIP else Factor(self.motion, self.axis, -self.amount)
+
+    def _rotation(self) -> sp.Matrix:
+        if self.motion is Motion.FLIP:
+            cosine, sine = 1 - 2 * self.amount, sp.Integer(0)
+        else:
+            cosine, sine = sp.cos(self.amount), sp.sin(self.amount)
+        rotation = sp.eye(3)
+        first, second = (self.axis + 1) % 3, (self.axis + 2) % 3
+        rotation[first, first] = rotation[second, second] = cosine
+        rotation[first, second], rotation[second, first] = -sine, sine
+        return rotation
+
+
+@dataclass(frozen=True)
+class Chain:
+    """A product of elementary frames, base first."""
+
+    factors: tuple[Factor, ...]
+
+    def __mul__(self, other: Chain) -> Chain:
+        return Chain(self.factors + other.factors)
+
+    def matrix(self) -> sp.ImmutableMatrix:
+        """The homogeneous 4 x 4 matrix of the product."""
+        product = sp.ImmutableMatrix(sp.eye(4))
+        for factor in self.factors:
+            product = product * factor.matrix()
+        return sp.ImmutableMatrix(product)
+
+
+def _one(motion: Motion, axis: int, amount: object) -> Chain:
+    return Chain((Factor(motion, axis, sp.sympify(amount)),))
+
+
+def Rx(angle: object) -> Chain:
+    """Turn about x by an angle (a joint, or an expression in radians)."""
+    return _one(Motion.TURN, 0, angle)
+
+
+def Ry(angle: object) -> Chain:
+    """Turn about y."""
+    return _one(Motion.TURN, 1, angle)
+
+
+def Rz(angle: object) -> Chain:
+    """Turn about z."""
+    return _one(Motion.TURN, 2, angle)
+
+
+def Tx(distance: object) -> Chain:
+    """Go along x."""
+    return _one(Motion.SHIFT, 0, distance)
+
+
+def Ty(distance: object) -> Chain:
+    """Go along y."""
+    return _one(Motion.SHIFT, 1, distance)
+
+
+def Tz(distance: object) -> Chain:
+    """Go along z."""
+    return _one(Motion.SHIFT, 2, distance)
+
+
+def Txyz(x: object, y: object, z: object) -> Chain:
+    """Go along x, y and z."""
+    return Tx(x) * Ty(y) * Tz(z)
+
+
+def flip_x(flag: object) -> Chain:
+    """Half a turn about x where the flag parameter is set (a flange that looks down)."""
+    return _one(Motion.FLIP, 0, flag)
+
+
+def denavit_hartenberg(*rows: tuple[object, object, object, object]) -> Chain:
+    """A chain by its table, a row a joint: angle about z, distance along z, length along x, twist about x (angles in radians)."""
+    factors = (f for angle, d, a, twist in rows for f in (Rz(angle) * Tz(d) * Tx(a) * Rx(twist)).factors)
+    return Chain(tuple(f for f in factors if f.amount != 0))

@@ -1,0 +1,64 @@
+"""The numerical constants of the product. Each stands here once and nowhere else, but for those of the scan in `roots`."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+DEGREE = sp.Symbol("DEGREE", positive=True)
+"""One degree in radians: a named constant of every language."""
+FREE_ANGLE = sp.Float("1e-11")
+"""A scaled measure at or below this leaves its angle free, and a branch byte reads 3."""
+KNOWN_ANGLE = sp.Float("0.1")
+"""A scaled measure above this gives its angle to 1e-15, so that hardly anything can be made of moving it."""
+OUT_OF_REACH = sp.Float("1e-9")
+"""What is beyond its bound by more than this share is not reached by moving an angle that is known."""
+BOUNDARY = sp.Float("1e-12")
+"""A normalised radicand negative by at most this is zero: the boundary belongs to the workspace."""
+FOLD = sp.Float("1e-6")
+"""A radicand below this share of the machine's squared length is near enough to zero for its root to multiply rounding."""
+ROUNDING = sp.Float("1e-12")
+"""A motion of the pose smaller than this share of the machine is rounding."""
+INSIDE = sp.Float("1e-7")
+"""An angle that is moved to where a later step reaches is moved inside of its boundary by this share, where that is free."""
+LARGEST = sp.Integer(10) ** 9
+"""Inputs larger in size than this are refused."""
+ROTATION = sp.Float("1e-4")
+"""How far the product of a rotation with its transpose may be from the identity: frames come from single precision, too."""
+EXACT_ROTATION = sp.Float("1e-12")
+"""A rotation nearer to one than this is used as it is; one that is further away is repaired."""
+PLANE = sp.Float("1e-6")
+"""How far a planar machine's commanded z may be from its plane, per unit of reach."""
+LIMIT = sp.Float("1e-9")
+"""Relative tolerance of an axis limit."""
+SHORTEST_LINK = sp.Float("1e-9")
+"""An effective link shorter than this fraction of the machine's scale cannot be aimed."""
+HELD = sp.Float("1e-9")
+"""A shift up to this share of all shifts may turn with a flange unnoticed; and axes this far apart are one."""
+SINGULAR = sp.Float("1e-3")
+"""A pose is singular where a margin is smaller than this in size."""
+PIVOT = sp.Float("1e-14")
+"""A matrix is singular where no pivot is larger than this share of its largest entry."""
+SOLVABLE = sp.Float("1e30")
+"""Linear equations are solved where all their numbers are at most this size, and the largest at least its reciprocal."""
+CONVERGED = sp.Float("1e-11")
+"""An iteration has converged where what is left of a length is at most this share of the machine's scale."""
+NEARLY = sp.Float("1e-6")
+"""A root of a search lies on a branch whose scaled margin it does not miss by more than this, the root of `BOUNDARY`."""
+TRIALS = 550
+"""Trials of a search for a root, at most."""
+FINISHED = 12
+"""Roots of a search that are looked at, at most."""
+MET = sp.Float("1e-10")
+"""A root of a search meets the pose: what is left is at most this share of the machine, and so many radians."""
+IMPROVEMENTS = 3
+"""Steps of Newton's method that improve a root of a search, at most."""
+TIE = sp.Float("1e-6")
+"""An automatic choice takes a later branch only where its squared distance (degrees) is smaller by more than this."""
+TIE_SHARE = sp.Float("1e-6")
+"""Of linear axes, only where it is smaller by more than the square of this share of the machine's scale."""
+ONE_TURN = sp.Integer(350)
+"""An axis has one value inside its limits where they are at most this far apart (degrees): no step of a path crosses the gap."""
+EDGE = sp.Float("1e-9")
+"""How far (degrees) the intervals of the periods are shifted down: see `NearestPeriod`."""
+UNLIMITED = sp.Integer(10) ** 12
+"""Stands for "no limit": beyond anything an input can be."""

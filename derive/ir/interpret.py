@@ -1,0 +1,200 @@
+"""Execute a program over arrays: the reference semantics of every primitive, and what the checks run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import reduce
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from derive.ir.constants import (
+    DEGREE,
+    EDGE,
+    PIVOT,
+    SOLVABLE,
+)
+from derive.ir.primitives import (
+    Atan2,
+    NearestOnArc,
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Call,
+    FindRoot,
+    Iterate,
+    Let,
+    Program,
+    Require,
+    Solve,
+    Statement,
+    Status,
+)
+from derive.ir.roots import At, nearest
+from derive.ir.symbols import (
+    PLACE,
+)
+
+Array = NDArray[np.float64]
+_SHIFT = 180.0 + float(EDGE)
+
+
+def nearest_period(value: Array, centre: Array) -> Array:
+    """value + 360 k in [centre - 180 - EDGE, centre + 180 - EDGE)."""
+    return value - 360.0 * np.floor((value - centre + _SHIFT) / 360.0)
+
+
+def nearest_on_arc(angle: Array, centre: Array, half: Array) -> Array:
+    """The angle of the arc centre ± half nearest to `angle`, counted from the centre."""
+    delta = angle - centre - 2 * np.pi * np.floor((angle - centre + np.pi) / (2 * np.pi))
+    return centre + np.clip(delta, -half, half)
+
+
+_FUNCTIONS: dict[type[sp.Basic], Callable[..., Array]] = {
+    sp.sin: np.sin,
+    sp.cos: np.cos,
+    sp.Abs: np.abs,
+    Root: lambda x: np.sqrt(np.maximum(x, 0.0)),
+    Atan2: lambda y, x: np.arctan2(y + 0.0, x + 0.0),  # a zero has no sign
+    Select: np.where,
+    NearestPeriod: nearest_period,
+    NearestOnArc: nearest_on_arc,
+    sp.Le: np.less_equal,
+    sp.Lt: np.less,
+    sp.Ge: np.greater_equal,
+    sp.Gt: np.greater,
+    sp.And: lambda *c: reduce(np.logical_and, c),
+    sp.Or: lambda *c: reduce(np.logical_or, c),
+    sp.Add: lambda *t: reduce(np.add, t),
+    sp.Mul: lambda *t: reduce(np.multiply, t),
+    sp.Pow: lambda b, e: np.power(b, e),
+}
+
+
+def evaluate(expression: sp.Basic, values: Mapping[str, Array]) -> Array:
+    """The value of an expression for arrays of its symbols."""
+    if isinstance(expression, sp.Symbol):
+        return np.asarray(np.pi / 180.0) if expression == DEGREE else values[expression.name]
+    if expression in (sp.true, sp.false):
+        return np.asarray(expression == sp.true)
+    if isinstance(expression, sp.Number | sp.NumberSymbol):
+        return np.asarray(float(expression))
+    arguments = [evaluate(a, values) for a in expression.args]
+    return _FUNCTIONS[type(expression)](*arguments)
+
+
+def run(program: Program, values: Mapping[str, Array]) -> tuple[dict[str, Array], NDArray[np.object_]]:
+    """Outputs and statuses of a program for arrays of inputs; outputs are meaningful where the status is OK."""
+    known: dict[str, Array] = {k: np.asarray(v, dtype=float) for k, v in values.items()}
+    shape = np.broadcast_shapes(*(v.shape for v in known.values())) if known else ()
+    status = np.full(shape, Status.OK, dtype=object)
+    with np.errstate(all="ignore"):
+        _execute(program.body, known, status)
+        outputs = {o.name: np.broadcast_to(evaluate(o.value, known), shape) for o in program.outputs}
+    return outputs, status
+
+
+def _execute(statements: Iterable[Statement], known: dict[str, Array], status: NDArray[np.object_]) -> None:
+    for statement in statements:
+        if isinstance(statement, Let):
+            known[statement.name.name] = evaluate(statement.value, known)
+        elif isinstance(statement, Require):
+            _require(evaluate(statement.condition, known), statement.otherwise, status)
+        elif isinstance(statement, Solve):
+            _solve(statement, known, status.shape)
+        elif isinstance(statement, Call):
+            _call(statement, known, status)
+        elif isinstance(statement, FindRoot):
+            _find(statement, known, status)
+        else:
+            _iterate(statement, known, status)
+
+
+def _require(condition: Array, otherwise: Status, status: NDArray[np.object_]) -> None:
+    fails = np.logical_not(np.broadcast_to(condition, status.shape))
+    status[fails & (status == Status.OK)] = otherwise
+
+
+def _call(call: Call, known: dict[str, Array], status: NDArray[np.object_]) -> None:
+    """The shared program sees its arguments and constants alone; a row that it refuses has its status."""
+    inner = {s.name: known[s.name] for s in call.constants}
+    inner |= {name.name: evaluate(value, known) for name, value in call.given}
+    _execute(call.program.body, inner, status)
+    outputs = {o.name: o.value for o in call.program.outputs}
+    known.update({name.name: evaluate(outputs[name.name], inner) for name in call.names})
+
+
+def _find(search: FindRoot, known: dict[str, Array], status: NDArray[np.object_]) -> None:
+    """Roots are looked for only where they are wanted, and where nothing has refused before."""
+    shape = status.shape
+    looked = np.broadcast_to(evaluate(search.wanted, known), shape) & (status == Status.OK)
+    rows = {k: np.broadcast_to(v, shape)[looked] for k, v in known.items()}
+
+    def at(program: Program, place: At) -> Array:
+        if not len(place.rows):
+            return np.zeros((0, len(program.outputs)))
+        there = {s.name: rows[s.name][place.rows] for s in program.inputs if s not in PLACE}
+        there |= {s.name: np.asarray(v, dtype=float) for s, v in zip(PLACE, place[1:], strict=True)}
+        outputs, _ = run(program, there)
+        return np.stack([np.broadcast_to(outputs[o.name], place.joint.shape) for o in program.outputs], axis=1)
+
+    start = np.broadcast_to(evaluate(search.start, known), shape)[looked]
+    found, values = nearest(lambda place: at(search.trial, place), lambda place: at(search.finish, place), start)
+    columns = np.concatenate([found[:, None], values], axis=1)
+    for name, column in zip(search.names, columns.T, strict=True):
+        known[name.name] = np.zeros(shape)
+        known[name.name][looked] = column
+
+
+def _iterate(loop: Iterate, known: dict[str, Array], status: NDArray[np.object_]) -> None:
+    """Rows that are done keep their state, and so every name of the step, while the others go on."""
+    known.update({name.name: evaluate(value, known) for name, value in zip(loop.state, loop.start, strict=True)})
+    done = np.zeros(status.shape, dtype=bool)
+    for _ in range(loop.limit):
+        _execute(loop.step, known, status)
+        done = np.broadcast_to(evaluate(loop.done, known), status.shape)
+        if np.all(done | (status != Status.OK)):
+            break
+        following = [evaluate(value, known) for value in loop.following]
+        known.update({n.name: np.where(done, known[n.name], v) for n, v in zip(loop.state, following, strict=True)})
+    _require(done, loop.otherwise, status)
+
+
+def _solve(system: Solve, known: dict[str, Array], shape: tuple[int, ...]) -> None:
+    matrix, right = (
+        np.array([np.broadcast_to(evaluate(e, known), shape) for e in entries], dtype=float).reshape(system.size, -1, *shape)
+        for entries in (system.matrix, system.right)
+    )
+    determinant, solution = solve(matrix, right)
+    known.update(zip((n.name for n in system.names), solution.reshape(-1, *shape), strict=True))
+    if system.determinant is not None:
+        known[system.determinant.name] = determinant
+
+
+def solve(matrix: Array, right: Array) -> tuple[Array, Array]:
+    """Determinant and solution by LU decomposition with partial pivoting: rows, columns, then any shape. Unsolvable: zeros."""
+    matrix, right, size = matrix.copy(), right.copy(), len(matrix)
+    largest, most = np.max(np.abs(matrix), axis=(0, 1)), float(SOLVABLE)
+    tiny = float(PIVOT) * largest
+    regular = (largest >= 1.0 / most) & (largest <= most) & np.all(np.abs(right) <= most, axis=(0, 1))
+    determinant = np.ones(matrix.shape[2:])
+    for k in range(size):
+        best = k + np.argmax(np.abs(matrix[k:, k]), axis=0)
+        for table in (matrix, right):
+            table[k], lifted = np.take_along_axis(table, best[None, None], axis=0)[0], table[k].copy()
+            np.put_along_axis(table, np.broadcast_to(best[None, None], (1, *lifted.shape)), lifted[None], axis=0)
+        determinant = np.where(best == k, determinant, -determinant) * matrix[k, k]
+        regular &= np.abs(matrix[k, k]) > tiny
+        divisor = np.where(regular, matrix[k, k], 1.0)
+        for i in range(k + 1, size):
+            factor = matrix[i, k] / divisor
+            matrix[i, k + 1 :] -= factor * matrix[k, k + 1 :]
+            right[i] -= factor * right[k]
+    for k in reversed(range(size)):
+        for i in range(k + 1, size):
+            right[k] -= matrix[k, i] * right[i]
+        right[k] /= np.where(regular, matrix[k, k], 1.0)
+    return np.where(regular, determinant, 0.0), np.where(regular, right, 0.0)

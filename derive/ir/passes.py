@@ -1,0 +1,224 @@
+"""Passes over programs: fold aliases, order by need, hoist what depends on parameters alone.
+
+fold    Let(cos_s, cos_heading); … cos_s …                   →  … cos_heading …
+order   a Let stands just before its first use; one that nothing needs disappears, and so does what a call need not bind
+hoist   Let(scale_a2, 2*link_length_1*link_length_2)         →  computed once, by `setup`
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+
+import sympy as sp
+
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.names import Names
+from derive.ir.primitives import (
+    Root,
+)
+from derive.ir.program import (
+    Call,
+    FindRoot,
+    Iterate,
+    Let,
+    Output,
+    Program,
+    Require,
+    Solve,
+    Statement,
+    binds,
+    reads,
+    rewritten,
+)
+from derive.ir.symbols import (
+    real,
+    symbols_of,
+)
+from derive.ir.verify import BrokenProgram, verify
+
+
+def assemble(name: str, statements: Iterable[Statement], outputs: Sequence[Output]) -> Program:
+    """A verified program from statements in any sensible order: bare names, folded, ordered, inputs found."""
+    body, values = bare(statements), tuple(Output(o.name, _bare_expression(o.value)) for o in outputs)
+    body, values = _fold(body, values)
+    ordered = _order(body, values)
+    program = Program(name, (), ordered, values)
+    return with_inputs(program)
+
+
+def with_inputs(program: Program) -> Program:
+    """The program with its inputs recomputed, verified."""
+    inputs = tuple(sorted(program.reads(), key=lambda s: s.name))
+    return verify(replace(program, inputs=inputs))
+
+
+@cache
+def _bare_expression(value: sp.Basic) -> sp.Expr:
+    """Symbols without assumptions of their own: in a program a name is a name. Pi is 180 degrees, a square root a root."""
+    named = value.xreplace({s: real(s.name) for s in value.free_symbols if s != DEGREE})
+    rooted = named.replace(_is_square_root, lambda power: Root(power.base) ** sp.sign(power.exp))
+    return rooted.subs(sp.pi, 180 * DEGREE) if rooted.has(sp.pi) else rooted
+
+
+def _is_square_root(node: sp.Basic) -> bool:
+    return isinstance(node, sp.Pow) and abs(node.exp) == sp.Rational(1, 2)
+
+
+def bare(statements: Iterable[Statement]) -> tuple[Statement, ...]:
+    """The statements with plain names: in a program a name is a name, whatever the solver knew of its sign."""
+    return tuple(renamed(rewritten(s, _bare_expression), lambda name: real(name.name)) for s in statements)
+
+
+def renamed(statement: Statement, name: Callable[[sp.Symbol], sp.Symbol]) -> Statement:
+    """The statement with the names that it binds changed."""
+    if isinstance(statement, Let):
+        return replace(statement, name=name(statement.name))
+    if isinstance(statement, Solve):
+        determinant = None if statement.determinant is None else name(statement.determinant)
+        return replace(statement, names=tuple(map(name, statement.names)), determinant=determinant)
+    if isinstance(statement, Iterate):
+        step = tuple(s for s in (renamed(s, name) for s in statement.step) if isinstance(s, Let | Solve))
+        return replace(statement, state=tuple(map(name, statement.state)), step=step)
+    return replace(statement, names=tuple(map(name, statement.names))) if isinstance(statement, Call) else statement
+
+
+def _fold(
+    body: Sequence[Statement], outputs: Sequence[Output]
+) -> tuple[tuple[Statement, ...], tuple[Output, ...]]:
+    aliases: dict[sp.Symbol, sp.Expr] = {}
+    kept = _without_aliases(body, aliases, {}, set())
+    return tuple(kept), tuple(replace(o, value=o.value.xreplace(aliases)) for o in outputs)
+
+
+def _without_aliases(
+    body: Sequence[Statement],
+    aliases: dict[sp.Symbol, sp.Expr],
+    bound: dict[sp.Symbol, sp.Expr],
+    names: set[sp.Symbol],
+) -> list[Statement]:
+    kept: list[Statement] = []
+    for s in body:
+        if isinstance(s, Let):
+            value = s.value.xreplace(aliases)
+            if bound.setdefault(s.name, s.value) != s.value:
+                raise BrokenProgram(f"{s.name} is bound twice, to {bound[s.name]} and to {s.value}")
+            if s.name in aliases or s.name in names:
+                continue  # the same Let again
+            if value.is_Symbol or value.is_Number:
+                aliases[s.name] = value
+                continue
+        if isinstance(s, Iterate):
+            inner = _without_aliases(s.step, aliases, bound, names)
+            s = replace(s, step=tuple(i for i in inner if isinstance(i, Let | Solve)))
+        kept.append(_with_names(s, aliases))
+        names |= set(binds(s))
+    return kept
+
+
+def _order(body: Sequence[Statement], outputs: Sequence[Output]) -> tuple[Statement, ...]:
+    ordered = [_with_ordered_step(s) if isinstance(s, Iterate) else s for s in body]
+    needed = _needed(ordered, [o.value for o in outputs])
+    read = {s for o in outputs for s in symbols_of(o.value)}.union(*map(reads, needed))
+    return tuple(replace(s, names=tuple(n for n in s.names if n in read)) if isinstance(s, Call) else s for s in needed)
+
+
+def _with_ordered_step(loop: Iterate) -> Iterate:
+    step = _needed(loop.step, [loop.done, *loop.following])
+    return replace(loop, step=tuple(s for s in step if isinstance(s, Let | Solve)))
+
+
+def _needed(body: Sequence[Statement], wanted: Sequence[sp.Basic]) -> tuple[Statement, ...]:
+    """What the wanted expressions need, each just before its first use; what sets the status is always needed."""
+    sources = {name: s for s in body for name in binds(s)}
+    done: list[Statement] = []
+    begun: set[int] = set()
+
+    def provide(statement: Statement) -> None:
+        if id(statement) in begun:  # also a circle, which the verifier then refuses
+            return
+        begun.add(id(statement))
+        need(reads(statement))
+        done.append(statement)
+
+    def need(symbols: set[sp.Symbol]) -> None:
+        for name, source in sources.items():  # in the order of the derivation
+            if name in symbols:
+                provide(source)
+
+    for s in body:
+        if isinstance(s, Require | Iterate | Call | FindRoot):
+            provide(s)
+    for value in wanted:
+        need(symbols_of(value))
+    return tuple(done)
+
+
+def is_read_once(program: Program, name: sp.Symbol) -> bool:
+    """Whether one statement or one output alone reads a name."""
+    return sum(name in reads(s) for s in program.body) + sum(name in symbols_of(o.value) for o in program.outputs) == 1
+
+
+def hoist(programs: Sequence[Program], constants: Iterable[str]) -> tuple[tuple[Program, ...], tuple[Let, ...]]:
+    """The programs without the Lets that depend on constants alone, and these Lets, each value under one name.
+
+    A program that others call comes before them.
+    """
+    known = set(constants)
+    names_taken = Names(known | {name.name for p in programs for name in _varying(p, known)})
+    by_value: dict[sp.Expr, sp.Symbol] = {}
+    hoisted: list[Let] = []
+    lowered: dict[str, Program] = {}
+    for program in programs:
+        names: dict[sp.Symbol, sp.Symbol] = {}
+        body: list[Statement] = []
+        for s in program.body:
+            if not isinstance(s, Let):
+                body.append(_with_names(_calling(s, lowered), names))
+                continue
+            value = s.value.xreplace(names)
+            if not {v.name for v in symbols_of(value)} <= known:
+                body.append(replace(s, value=value))
+                continue
+            if value not in by_value:
+                name = names_taken.fresh(s.name.name)
+                known.add(name.name)
+                by_value[value] = name
+                hoisted.append(Let(name, value, s.note))
+            names[s.name] = by_value[value]
+        outputs = tuple(replace(o, value=o.value.xreplace(names)) for o in program.outputs)
+        lowered[program.name] = with_inputs(replace(program, body=tuple(body), outputs=outputs))
+    return tuple(lowered.values()), tuple(hoisted)
+
+
+def _calling(statement: Statement, programs: Mapping[str, Program]) -> Statement:
+    """The statement; a call of the program as it is now."""
+    if isinstance(statement, FindRoot):
+        return replace(statement, trial=programs[statement.trial.name], finish=programs[statement.finish.name])
+    return replace(statement, program=programs[statement.program.name]) if isinstance(statement, Call) else statement
+
+
+def _with_names(statement: Statement, names: Mapping[sp.Symbol, sp.Expr]) -> Statement:
+    return rewritten(statement, lambda e: e.xreplace(dict(names)))
+
+
+def _varying(program: Program, constants: set[str]) -> list[sp.Symbol]:
+    """The names that depend on more than constants."""
+    constant = {let.name for let in program.lets() if _is_constant(let, program, constants)}
+    return [name for name in program.bound() if name not in constant]
+
+
+def _is_constant(let: Let, program: Program, constants: set[str]) -> bool:
+    """Whether a Let depends on constants alone, through whatever Lets."""
+    values = {s.name: s.value for s in program.lets()}
+    pending = symbols_of(let.value)
+    while pending:
+        symbol = pending.pop()
+        if symbol in values:
+            pending |= symbols_of(values[symbol])
+        elif symbol.name not in constants:
+            return False
+    return True

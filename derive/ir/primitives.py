@@ -1,0 +1,61 @@
+"""The primitives: a closed set of total functions, of which every language has its own."""
+
+from __future__ import annotations
+
+import sympy as sp
+from sympy.logic.boolalg import Boolean
+
+
+class Root(sp.Function):
+    """root(x) = sqrt(max(0, x)): total."""
+
+    nargs = 1
+    is_nonnegative = True
+
+
+class Atan2(sp.Function):
+    """atan2(y, x) in radians, in (-pi, pi]; atan2(0, 0) = 0."""
+
+    nargs = 2
+
+
+class Select(sp.Function):
+    """select(condition, a, b): a where the condition holds, else b; both are evaluated."""
+
+    nargs = 3
+    is_real = True
+
+    @classmethod
+    def eval(cls, condition: Boolean, first: sp.Expr, second: sp.Expr) -> sp.Expr | None:
+        """A choice between equals is none, nor one that is decided."""
+        if condition in (sp.true, sp.false):
+            return first if condition == sp.true else second
+        return first if first == second else None
+
+
+class NearestPeriod(sp.Function):
+    """nearest_period(value, centre): value + 360 k in [centre - 180, centre + 180), in degrees.
+
+    The interval is shifted down by 1e-9 degrees, so that a value on an edge stays on its side in
+    spite of rounding: forward kinematics numbers the turns with the same shift.
+    """
+
+    nargs = 2
+
+
+class NearestOnArc(sp.Function):
+    """nearest_on_arc(angle, centre, half): the angle of the arc centre ± half nearest to angle (radians)."""
+
+    nargs = 3
+
+
+PRIMITIVES: tuple[type[sp.Function], ...] = (
+    sp.sin,
+    sp.cos,
+    sp.Abs,
+    Root,
+    Atan2,
+    Select,
+    NearestPeriod,
+    NearestOnArc,
+)

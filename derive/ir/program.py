@@ -1,0 +1,287 @@
+"""The intermediate representation: straight-line, total programs over real numbers.
+
+A program binds names (`Let`), sets a status (`Require`) and ends in outputs. Values are SymPy
+expressions over a closed set of primitives, so that every language needs one printer and nothing else.
+Every `Let` is defined for any finite input: a `Require` protects nothing, it only decides the status.
+It can therefore be printed as an early return (Structured Text, scalar Python) or as a mask (NumPy).
+
+Angles are in radians inside a program; axis values, references and limits are in degrees and the
+user's length unit. `DEGREE` (pi/180) is the one conversion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from enum import Enum
+from math import isqrt
+
+import sympy as sp
+from sympy.logic.boolalg import Boolean
+
+from derive.ir.symbols import (
+    PLACE,
+    symbols_of,
+)
+
+TURN_NOTE = ": its turn"
+"""How the note ends of a statement that chooses the turn of an axis."""
+
+
+class Status(Enum):
+    """The outcome of a call, by its SoftMotion enumerator."""
+
+    OK = "SMC_NO_ERROR"
+    NOT_INITIALIZED = "SMC_TRAFO_NOT_INITIALIZED"
+    BAD_INPUT = "SMC_CP_ERROR_CREATING_PARAM_TRANSFORM"
+    UNREACHABLE = "SMC_AXIS_INVERSE_TRAFO_EXCEEDING_POSLIMITS"
+    IMPOSSIBLE = "SMC_TRAFO_INVALID_CONSTELLATION"
+    INVALID_COUPLING = "SMC_TRAFO_INVALID_COUPLING"
+
+
+
+
+
+
+
+
+
+
+
+
+
+
+@dataclass(frozen=True)
+class Let:
+    """Bind `name` to `value`. `note` names the step of the derivation, for the reader."""
+
+    name: sp.Symbol
+    value: sp.Expr
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Require:
+    """Set the status `otherwise` where `condition` does not hold. Conditions are positive: NaN fails them."""
+
+    condition: Boolean
+    otherwise: Status
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Solve:
+    """Bind `names` to matrix^-1 right, by LU decomposition with partial pivoting.
+
+    Total: the determinant and the solution are zeros where the matrix is singular, or a number is none or beyond `SOLVABLE`.
+
+    All three by rows: the matrix is square, `names` and `right` have as many columns as there are right-hand sides,
+    which may be none where the determinant alone is wanted.
+    """
+
+    names: tuple[sp.Symbol, ...]
+    matrix: tuple[sp.Expr, ...]
+    right: tuple[sp.Expr, ...] = ()
+    determinant: sp.Symbol | None = None
+    note: str = ""
+
+    @property
+    def size(self) -> int:
+        """How many rows the matrix has."""
+        return isqrt(len(self.matrix))
+
+    @property
+    def columns(self) -> int:
+        """How many right-hand sides there are."""
+        return len(self.right) // self.size
+
+
+@dataclass(frozen=True)
+class Iterate:
+    """Repeat `step` from `start` until `done` holds, at most `limit` times; status `otherwise` where it never does.
+
+    Every pass evaluates the step at the state; then it is done, or the state becomes `following`. So the names of the
+    step are bound behind the loop, too: where it was done, they belong to the final state.
+    """
+
+    state: tuple[sp.Symbol, ...]
+    start: tuple[sp.Expr, ...]
+    step: tuple[Let | Solve, ...]
+    following: tuple[sp.Expr, ...]
+    """Each may read its own state and the names of the step, but no other state: the order of assignment is free."""
+    done: Boolean
+    limit: int
+    otherwise: Status
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Call:
+    """Run a program that several programs share, and bind names of its outputs; where it refuses, so does the caller.
+
+    `given` are the values of its arguments. What else it reads is a constant of the machine: an input of the caller, too.
+    """
+
+    program: Program
+    given: tuple[tuple[sp.Symbol, sp.Expr], ...]
+    names: tuple[sp.Symbol, ...]
+    """The outputs that the caller reads: the values of the others are dropped."""
+    note: str = ""
+
+    @property
+    def arguments(self) -> tuple[sp.Expr, ...]:
+        """The values of the arguments, in the order of the shared program's inputs."""
+        values = dict(self.given)
+        return tuple(values[s] for s in self.program.inputs if s in values)
+
+    @property
+    def constants(self) -> tuple[sp.Symbol, ...]:
+        """What the shared program reads besides its arguments."""
+        arguments = {name for name, _ in self.given}
+        return tuple(s for s in self.program.inputs if s not in arguments)
+
+
+@dataclass(frozen=True)
+class FindRoot:
+    """Bind `names` to 1 and the outputs of `finish` at the root of `trial` that fits and is nearest to `start` on the circle.
+
+    A trial is a function of `TRIED`, on the wanted side of a two-root step (`SIDE` +1) or the other (-1), with the partial step
+    of the number `FREED` given by `FREED_ANGLE` instead (-1: none). Its outputs are the value that must vanish, its slope, a
+    guard that is negative where there is no solution, its slope, then cosine and sine of the angle of every partial step.
+    `finish` has the same arguments; its first output is 1 where the root is wanted, else 0. See `roots` for how roots are
+    found. Where there is none, or `wanted` does not hold so that none is looked for, the names are bound to zeros.
+    """
+
+    trial: Program
+    finish: Program
+    start: sp.Expr
+    wanted: Boolean
+    names: tuple[sp.Symbol, ...]
+    arguments: tuple[sp.Symbol, ...]
+    """What both programs are given besides the place; all else that they read is a constant of the machine."""
+    note: str = ""
+
+    def given(self, program: Program) -> tuple[sp.Symbol, ...]:
+        """The arguments of one of the programs, in the order of its inputs."""
+        return tuple(s for s in program.inputs if s in self.arguments or s in PLACE)
+
+
+Statement = Let | Require | Solve | Iterate | Call | FindRoot
+
+
+@dataclass(frozen=True)
+class Output:
+    """A named result, written only on success."""
+
+    name: str
+    value: sp.Expr
+
+
+@dataclass(frozen=True)
+class Program:
+    """A straight-line program: the free names it may read, its statements, its outputs."""
+
+    name: str
+    inputs: tuple[sp.Symbol, ...]
+    body: tuple[Statement, ...]
+    outputs: tuple[Output, ...]
+    summary: str = ""
+    """What it does, where its name does not say it: of a shared program."""
+
+    def lets(self) -> tuple[Let, ...]:
+        """The bindings, in order."""
+        return tuple(s for s in self.body if isinstance(s, Let))
+
+    def requires(self) -> tuple[Require, ...]:
+        """The conditions, in order."""
+        return tuple(s for s in self.body if isinstance(s, Require))
+
+    def bound(self) -> tuple[sp.Symbol, ...]:
+        """Every name that a statement binds, in order."""
+        return tuple(name for s in self.body for name in binds(s))
+
+    def reads(self) -> frozenset[sp.Symbol]:
+        """Every free symbol that a statement or an output reads."""
+        used: set[sp.Symbol] = set()
+        for statement in self.body:
+            used |= reads(statement)
+        for output in self.outputs:
+            used |= symbols_of(output.value)
+        return frozenset(used) - set(self.bound())
+
+
+
+
+
+
+
+
+def binds(statement: Statement) -> tuple[sp.Symbol, ...]:
+    """The names a statement binds, in order."""
+    if isinstance(statement, Let):
+        return (statement.name,)
+    if isinstance(statement, Solve):
+        return statement.names + (() if statement.determinant is None else (statement.determinant,))
+    if isinstance(statement, Iterate):
+        return (*statement.state, *(name for s in statement.step for name in binds(s)))
+    return statement.names if isinstance(statement, Call | FindRoot) else ()
+
+
+def expressions(statement: Statement) -> Iterator[sp.Basic]:
+    """The expressions of a statement, in the order of their evaluation."""
+    if isinstance(statement, Let):
+        yield statement.value
+    elif isinstance(statement, Require):
+        yield statement.condition
+    elif isinstance(statement, Solve):
+        yield from (*statement.matrix, *statement.right)
+    elif isinstance(statement, Call):
+        yield from (value for _, value in statement.given)
+    elif isinstance(statement, FindRoot):
+        yield from (statement.start, statement.wanted)
+    else:
+        yield from statement.start
+        for inner in statement.step:
+            yield from expressions(inner)
+        yield from (statement.done, *statement.following)
+
+
+def reads(statement: Statement) -> set[sp.Symbol]:
+    """The symbols a statement reads and does not bind itself."""
+    found = {s for e in expressions(statement) for s in symbols_of(e)}
+    if isinstance(statement, Call):
+        return found | set(statement.constants)
+    if isinstance(statement, FindRoot):
+        return found | {s for p in (statement.trial, statement.finish) for s in p.inputs if s not in PLACE}
+    return found - set(binds(statement)) if isinstance(statement, Iterate) else found
+
+
+def shared(programs: Iterable[Program]) -> tuple[Program, ...]:
+    """The programs that these call, each once, and before those that call it."""
+    found: dict[str, Program] = {}
+    for statement in (s for program in programs for s in program.body):
+        called = [statement.program] if isinstance(statement, Call) else []
+        called += [statement.trial, statement.finish] if isinstance(statement, FindRoot) else []
+        found |= {inner.name: inner for program in called for inner in (*shared([program]), program)}
+    return tuple(found.values())
+
+
+def rewritten(statement: Statement, change: Callable[[sp.Basic], sp.Basic]) -> Statement:
+    """The statement with every expression changed; the names it binds stay."""
+    if isinstance(statement, Let):
+        return replace(statement, value=change(statement.value))
+    if isinstance(statement, Require):
+        return replace(statement, condition=change(statement.condition))
+    if isinstance(statement, Solve):
+        return replace(statement, matrix=tuple(map(change, statement.matrix)), right=tuple(map(change, statement.right)))
+    if isinstance(statement, Call):
+        return replace(statement, given=tuple((name, change(value)) for name, value in statement.given))
+    if isinstance(statement, FindRoot):
+        return replace(statement, start=change(statement.start), wanted=change(statement.wanted))
+    return replace(
+        statement,
+        start=tuple(map(change, statement.start)),
+        step=tuple(s for s in (rewritten(s, change) for s in statement.step) if isinstance(s, Let | Solve)),
+        following=tuple(map(change, statement.following)),
+        done=change(statement.done),
+    )

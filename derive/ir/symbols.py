@@ -1,0 +1,55 @@
+"""Every name that programs share, as a symbol."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from derive.ir.constants import DEGREE
+
+
+def real(name: str) -> sp.Symbol:
+    """The real symbol of that name: the one way to make a name that a program reads or binds."""
+    return sp.Symbol(name, real=True)
+
+
+def symbols_of(expression: sp.Basic) -> set[sp.Symbol]:
+    """The free symbols of an expression, without the named constant."""
+    return set(names_in(expression))
+
+
+@cache
+def names_in(expression: sp.Basic) -> frozenset[sp.Symbol]:
+    """The same as a set that stays: asked again and again of the same expressions."""
+    return frozenset(s for s in expression.free_symbols if isinstance(s, sp.Symbol)) - {DEGREE}
+
+
+COORDINATE_NAMES = ("x", "y", "z")
+ROTATION_ENTRIES: tuple[sp.Symbol, ...] = tuple(real(f"r{i}{j}") for i in "123" for j in "123")
+"""The rotation of a frame, by rows."""
+
+HEADING = real("heading")
+OFFSET = tuple(real(f"point_{c}") for c in COORDINATE_NAMES)
+"""The point off the flange, in flange coordinates."""
+
+ASSEMBLY_SIGN = real("assembly_sign")
+"""The sign of det A at the home pose: the assembly mode of the machine."""
+SCALE = real("machine_scale")
+"""A length of the machine: the sum of its lengths, or one user's unit where it has none; the mean leg of a platform."""
+MIN_TYPE2_MARGIN = "min_type2_margin"
+DETERMINANT = real("determinant")
+POSITION = tuple(map(real, COORDINATE_NAMES))
+HOME_ROTATION = tuple(real(f"home_{r.name}") for r in ROTATION_ENTRIES)
+
+FLANGE_AXIS = tuple(real(f"flange_axis_{c}") for c in COORDINATE_NAMES)
+"""The line about which the carrying flange turns, as the flange sees it; zero where it turns freely."""
+BASE_AXIS = tuple(real(f"base_axis_{c}") for c in COORDINATE_NAMES)
+"""The same line as the machine sees it."""
+
+START_POSITION = tuple(real(f"start_{c}") for c in COORDINATE_NAMES)
+START_ROTATION = tuple(real(f"start_{r.name}") for r in ROTATION_ENTRIES)
+
+TRIED, SIDE, FREED, FREED_ANGLE = map(real, ("tried", "side", "freed", "freed_angle"))
+PLACE = (TRIED, SIDE, FREED, FREED_ANGLE)
+"""Where a trial is made: see `FindRoot`."""

@@ -1,0 +1,112 @@
+"""The verifier of the intermediate representation: run after every pass, it finds a broken program at once."""
+
+from __future__ import annotations
+
+import re
+
+import sympy as sp
+
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.primitives import (
+    PRIMITIVES,
+)
+from derive.ir.program import (
+    Call,
+    Iterate,
+    Program,
+    Solve,
+    Statement,
+    binds,
+    expressions,
+)
+from derive.ir.symbols import (
+    symbols_of,
+)
+
+_PORTABLE = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*\Z")
+_ARITHMETIC = (sp.Add, sp.Mul, sp.Pow, sp.Symbol, sp.Rational, sp.Float, sp.Integer)
+_LOGIC = (sp.Le, sp.Lt, sp.Ge, sp.Gt, sp.And, sp.Or)
+
+
+class BrokenProgram(Exception):
+    """A program that no language may print; the message names the program and the place."""
+
+
+def verify(program: Program) -> Program:
+    """Return the program, or raise `BrokenProgram`: unbound or repeated name, unportable name, unknown primitive."""
+    bound = {s.name for s in program.inputs} | {DEGREE.name}
+    spelled: dict[str, str] = {}
+    for name in [s.name for s in program.inputs] + [name.name for name in program.bound()]:
+        _check_name(program, name, spelled)
+    for statement in program.body:
+        _check_statement(program, statement, bound)
+    for output in program.outputs:
+        _check_expression(program, output.value, bound)
+    return program
+
+
+def _check_statement(program: Program, statement: Statement, bound: set[str]) -> None:
+    """Check what a statement reads, and add what it binds."""
+    if isinstance(statement, Iterate):
+        _check_loop(program, statement, bound)
+        return
+    if isinstance(statement, Solve):
+        sizes = statement.size**2, statement.size * statement.columns, len(statement.right)
+        if sizes != (len(statement.matrix), len(statement.right), len(statement.names)):
+            raise BrokenProgram(f"{program.name}: the matrix, the right-hand sides and the names do not fit together")
+    if isinstance(statement, Call):
+        _check_call(program, statement)
+    for value in expressions(statement):
+        _check_expression(program, value, bound)
+    bound |= {name.name for name in binds(statement)}
+
+
+def _check_call(program: Program, call: Call) -> None:
+    """The names of a call are those of the shared program, whose constants no statement of the caller binds."""
+    outputs, arguments = {o.name for o in call.program.outputs}, [name for name, _ in call.given]
+    if strangers := [n.name for n in call.names if n.name not in outputs]:
+        raise BrokenProgram(f"{program.name}: {call.program.name} has no output {strangers[0]!r}")
+    if strangers := [n.name for n in arguments if n not in call.program.inputs]:
+        raise BrokenProgram(f"{program.name}: {call.program.name} does not read {strangers[0]!r}")
+    if unbound := [s.name for s in call.constants if s not in program.inputs]:
+        raise BrokenProgram(f"{program.name}: {call.program.name} reads {unbound[0]!r}, which is neither given nor an input")
+
+
+def _check_loop(program: Program, loop: Iterate, bound: set[str]) -> None:
+    if not len(loop.state) == len(loop.start) == len(loop.following) or loop.limit < 1:
+        raise BrokenProgram(f"{program.name}: state, start and following of a loop must be as many, its limit at least 1")
+    for value in loop.start:
+        _check_expression(program, value, bound)
+    bound |= {name.name for name in loop.state}
+    for inner in loop.step:
+        _check_statement(program, inner, bound)
+    for value in (loop.done, *loop.following):
+        _check_expression(program, value, bound)
+    for own, value in zip(loop.state, loop.following, strict=True):
+        if others := sorted(s.name for s in symbols_of(value) if s in loop.state and s != own):
+            raise BrokenProgram(f"{program.name}: what follows {own} reads {others[0]!r}, which may have been assigned before")
+
+
+def _check_name(program: Program, name: str, spelled: dict[str, str]) -> None:
+    if not _PORTABLE.match(name):
+        raise BrokenProgram(f"{program.name}: {name!r} is not a portable snake_case name")
+    key = name.replace("_", "")  # Structured Text joins the words and ignores case
+    if key in spelled:
+        raise BrokenProgram(f"{program.name}: {name!r} is bound twice (also as {spelled[key]!r})")
+    spelled[key] = name
+
+
+def _check_expression(program: Program, value: sp.Basic, bound: set[str]) -> None:
+    for node in sp.preorder_traversal(value):
+        if isinstance(node, sp.Symbol) and node.name not in bound:
+            raise BrokenProgram(f"{program.name}: {node.name!r} is read before it is bound, in {value}")
+        if isinstance(node, sp.Pow) and not _is_power_printable(node):
+            raise BrokenProgram(f"{program.name}: power {node} is not an integer power")
+        if not isinstance(node, _ARITHMETIC + _LOGIC + PRIMITIVES) and node not in (sp.true, sp.false):
+            raise BrokenProgram(f"{program.name}: {type(node).__name__} is not a primitive, in {value}")
+
+
+def _is_power_printable(node: sp.Pow) -> bool:
+    return bool(node.exp.is_Integer)

@@ -1,0 +1,114 @@
+"""Assembly modes: which sign of the forward slope is which way to assemble the loop, and what the inverse must refuse."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy as sp
+
+from derive.algebra.normal_form import polynomial
+from derive.description.mechanism import DescriptionError, Mechanism
+from derive.equations.closure import all_angles, signs_of, with_fixed_names
+from derive.equations.pose_at_axes import (
+    Forward,
+)
+from derive.equations.trigonometry import named_trigonometry
+from derive.ir.interpret import run
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    ASSEMBLY_SIGN,
+    MIN_TYPE2_MARGIN,
+    real,
+)
+from derive.kinematics.sampling import sample_axes, sample_machine
+
+_SAMPLES = 256
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """Forward kinematics with its assembly mode chosen by a parameter, and the margin that the mode is the sign of."""
+
+    forward: Forward
+    margin: sp.Expr | None
+    """The slope over its scale, in the names of the forward derivation; None where forward has one solution."""
+
+
+def assembled(mechanism: Mechanism, forward: Forward) -> Assembled:
+    """Bind the assembly sign to the machine's parameter, by the description's indicator."""
+    if mechanism.assembly is None or forward.slope is None:
+        return Assembled(forward, None)
+    first = mechanism.assembly.signs[0] * _orientation(mechanism, forward)
+    flag = real(mechanism.assembly.parameter)
+    chosen = first * (1 - 2 * flag)
+    if mechanism.assembly.handedness != 1:
+        chosen = Select(sp.Gt(with_fixed_names(mechanism, mechanism.assembly.handedness), 0), chosen, -chosen)
+    sign = Let(ASSEMBLY_SIGN, chosen, "assembly mode of this machine")
+    margin = forward.slope.value / forward.slope.scale
+    return Assembled(replace(forward, statements=(sign, *forward.statements)), margin)
+
+
+def _orientation(mechanism: Mechanism, forward: Forward) -> int:
+    """+1 where the sign of the slope is that of the indicator, -1 where it is the opposite."""
+    assert mechanism.assembly is not None
+    described = mechanism.assembly.indicator * mechanism.assembly.handedness
+    lets, (indicator,) = named_trigonometry(mechanism, [with_fixed_names(mechanism, described)])
+    program = assemble("assembly", (*forward.statements, *lets), [Output("indicator", indicator)])
+    machine = sample_machine(mechanism, 31)
+    samples = {**machine, **sample_axes(mechanism, machine, _SAMPLES, 32)}
+    found: set[int] = set()
+    for side in (1.0, -1.0):
+        values, status = run(program, {**samples, ASSEMBLY_SIGN.name: np.asarray(side)})
+        good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
+        found |= {int(s) for s in np.sign(side * values["indicator"][good])}
+    if len(found) != 1 or 0 in found:
+        raise DescriptionError(f"assembly {mechanism.assembly.name!r}: its indicator does not tell the two solutions apart")
+    return found.pop()
+
+
+def assembly_checks(
+    mechanism: Mechanism, done: Assembled, solved: tuple[Statement, ...], offset: bool
+) -> tuple[Statement, ...]:
+    """What a solved branch must satisfy: on this machine's side, and far enough from losing control of the plate."""
+    if done.margin is None or mechanism.assembly is None:
+        return ()
+    bound = {s.name for s in solved if isinstance(s, Let)} | {real(c) for c in "xyz"}
+    bound |= {s for j in mechanism.joints for s in (j.symbol, j.motor)}
+    seen = {real(c): real(f"flange_{c}") for c in "xyz"} if offset else {}
+    own = tuple(
+        replace(s, value=s.value.xreplace(seen))
+        for s in done.forward.statements
+        if isinstance(s, Let) and s.name not in bound
+    )
+    margin = done.margin.xreplace(seen)
+    name = real(f"type2_{mechanism.assembly.margin}")
+    note = f"{mechanism.assembly.margin}: the other assembly mode, or too near to losing the plate"
+    return (
+        *own,
+        Let(name, margin * ASSEMBLY_SIGN),
+        Require(sp.Ge(name, real(MIN_TYPE2_MARGIN)), Status.UNREACHABLE, note),
+    )
+
+
+def bound_checks(mechanism: Mechanism, offset: bool) -> tuple[Statement, ...]:
+    """Sizes that must not be exceeded at the solution."""
+    seen = {real(c): real(f"flange_{c}") for c in "xyz"} if offset else {}
+    checks: list[Statement] = []
+    for b in mechanism.bounds:
+        value, largest = (
+            polynomial(with_fixed_names(mechanism, v), all_angles(mechanism), signs_of(mechanism)).xreplace(seen)
+            for v in (b.value, b.largest)
+        )
+        checks.append(Require(sp.Le(sp.Abs(value), largest), Status.UNREACHABLE, b.meaning))
+    return tuple(checks)

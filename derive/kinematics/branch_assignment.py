@@ -1,0 +1,128 @@
+"""Which two-root step is which branch: the sign of its slope must agree with the description's indicator."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy as sp
+
+from derive.algebra.normal_form import reduce_units
+from derive.description.mechanism import Branch, DescriptionError, Mechanism
+from derive.equations.closure import all_angles, with_fixed_names
+from derive.equations.pose_at_axes import (
+    Forward,
+)
+from derive.equations.problem import Slope
+from derive.equations.trigonometry import named_trigonometry
+from derive.ir.interpret import run
+from derive.ir.passes import assemble
+from derive.ir.program import (
+    Let,
+    Output,
+    Statement,
+    Status,
+    rewritten,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.kinematics.forward import (
+    derivation_at_axes,
+)
+from derive.kinematics.inverse import Inverse
+from derive.kinematics.sampling import sample_axes, sample_machine
+
+_SAMPLES = 64
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A branch, the step that decides it, and whether the step's sign is the branch's (+1) or its opposite (-1)."""
+
+    branch: Branch
+    slope: Slope
+    orientation: int
+
+    @property
+    def sigma(self) -> sp.Symbol:
+        """The branch's own sign: +1 is byte 1."""
+        return real(f"sigma_{self.branch.name}")
+
+    def margin(self, mechanism: Mechanism) -> sp.Expr:
+        """The signed, scaled slope: positive is byte 1."""
+        value = sp.cancel(self.orientation * self.slope.value / self.slope.scale)
+        return reduce_units(value, all_angles(mechanism)) if value.is_polynomial() else value
+
+
+def assign(mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool = False) -> tuple[Assignment, ...]:
+    """Find the step of every branch, or refuse.
+
+    `optional_zero` compares a machine without its optional lengths: the steps of the offset problem mean the
+    branches of the machine only where the point is the flange itself.
+    """
+    slopes = inverse.derivation.slopes
+    if not slopes and not mechanism.branches:
+        return ()
+    signs, indicators = _signs(mechanism, inverse, forward, optional_zero)
+    found: list[Assignment] = []
+    for branch, indicator in zip(mechanism.branches, indicators, strict=True):
+        steps = [(s, o) for s, row in zip(slopes, signs, strict=True) for o in (1, -1) if np.all(o * row == indicator)]
+        if len(steps) != 1:
+            raise DescriptionError(f"branch {branch.name!r}: its indicator agrees with {len(steps)} steps, not one")
+        first = next((a.branch.name for a in found if a.slope == steps[0][0]), None)
+        if first is not None:
+            raise DescriptionError(f"branches {first!r} and {branch.name!r} name the same two solutions")
+        found.append(Assignment(branch, *steps[0]))
+    unnamed = [s for s in slopes if s not in [a.slope for a in found]]
+    if unnamed:
+        names = ", ".join(str(s.sigma).removeprefix("sigma_") for s in unnamed)
+        raise DescriptionError(f"no branch names the two solutions for {names}")
+    return tuple(found)
+
+
+def steps_and_rest(
+    mechanism: Mechanism, inverse: Inverse, forward: Forward
+) -> tuple[tuple[Assignment, ...], tuple[Branch, ...]]:
+    """The steps of the branches that a step decides, and the branches that none does; every step must be a branch."""
+    branches = tuple(b for b in mechanism.branches if not b.is_crossing)
+    named = replace(mechanism, branches=branches)
+    signs, indicators = _signs(named, inverse, forward, False)
+    decided = tuple(
+        b for b, row in zip(branches, indicators, strict=True) if any(np.all(o * s == row) for s in signs for o in (1, -1))
+    )
+    found = assign(replace(mechanism, branches=decided), inverse, forward)
+    return found, tuple(b for b in branches if b not in decided)
+
+
+def _signs(
+    mechanism: Mechanism, inverse: Inverse, forward: Forward, optional_zero: bool
+) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    lets, indicators = named_trigonometry(
+        mechanism, [with_fixed_names(mechanism, b.indicator) * b.signs[0] for b in mechanism.branches]
+    )
+    slopes = [s.value for s in inverse.derivation.slopes]
+    named = [Let(real(f"sign_{k}"), v) for k, v in enumerate([*slopes, *indicators])]
+    statements = (*derivation_at_axes(mechanism, inverse, forward), *lets, *named)
+    program = assemble("signs", statements, [Output(n.name.name, n.name) for n in named])
+    machine = sample_machine(mechanism, 21, optional_zero)
+    samples = {**machine, **sample_axes(mechanism, machine, _SAMPLES, 22)}
+    samples.update({f"point_{c}": np.asarray(0.0) for c in "xyz"})
+    values, status = run(program, samples)
+    good = np.broadcast_to(status == Status.OK, (_SAMPLES,))
+    if not good.any():
+        raise DescriptionError("no sampled pose is possible: a quantity that must be positive never is, or the loop never closes")
+    rows = [np.sign(np.broadcast_to(values[n.name.name], (_SAMPLES,))[good]) for n in named]
+    return rows[: len(slopes)], rows[len(slopes) :]
+
+
+def with_branch_signs(statements: Sequence[Statement], assignments: Sequence[Assignment]) -> tuple[Statement, ...]:
+    """The derivation with every sign replaced by that of its branch."""
+    table = {a.slope.sigma: a.orientation * a.sigma for a in assignments}
+    return tuple(rewritten(s, lambda e: e.xreplace(table)) for s in statements)
+
+
+def margin_lets(mechanism: Mechanism, assignments: Sequence[Assignment]) -> tuple[Let, ...]:
+    """`branch_<name>`: the signed margin of every branch."""
+    return tuple(Let(real(f"branch_{a.branch.name}"), a.margin(mechanism)) for a in assignments)

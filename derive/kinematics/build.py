@@ -1,0 +1,329 @@
+"""From a description to all programs of a mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.description.mechanism import (
+    DescriptionError,
+    Mechanism,
+    Turning,
+)
+from derive.equations.axes import finite, joint_lets
+from derive.equations.chain_splits import is_spatial
+from derive.equations.closure import flange_rotation, heading_of
+from derive.equations.pose_at_axes import (
+    Forward,
+)
+from derive.equations.trigonometry import named_trigonometry
+from derive.geometry.pose import pose_of
+from derive.ir.constants import (
+    DEGREE,
+)
+from derive.ir.passes import assemble, hoist
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Statement,
+    Status,
+    shared,
+)
+from derive.ir.symbols import (
+    BASE_AXIS,
+    FLANGE_AXIS,
+    ROTATION_ENTRIES,
+    START_POSITION,
+    START_ROTATION,
+    real,
+)
+from derive.kinematics.assembly import Assembled, assembled, assembly_checks, bound_checks
+from derive.kinematics.branch_assignment import Assignment, assign, margin_lets, with_branch_signs
+from derive.kinematics.coupling import (
+    coupling_programs,
+)
+from derive.kinematics.differential import (
+    Factor,
+    factor_of,
+    jacobian_program,
+    jacobian_rows,
+    singularity_program,
+    twist_program,
+)
+from derive.kinematics.forward import (
+    at_point,
+    derivation_at_axes,
+    forward_program,
+    orientation_program,
+    pose_at_axes,
+)
+from derive.kinematics.inverse import Inverse, heading_lets, inverse_program, solve_offset, solve_pose
+from derive.kinematics.kinematics import Freedom, Kinematics, Margin
+from derive.kinematics.parameters import machine_parameters, setup_program
+from derive.kinematics.scanned import (
+    DETERMINANT,
+    branch_statements,
+    determinant_margin,
+    from_joints,
+    margin_statements,
+    search_given,
+    solve_both,
+)
+from derive.kinematics.shared_names import refuse_shared_names
+from derive.plate.legs import MARGIN
+from derive.plate.newton import (
+    at_given,
+    at_home,
+    found_from,
+    search_program,
+)
+from derive.plate.plate import platform_checks, platform_singularity
+from derive.solver.solve import Unsolved
+
+
+def build(mechanism: Mechanism) -> Kinematics:
+    """Derive everything. Raises `Unsolved` or `DescriptionError` where the description does not allow it."""
+    _count(mechanism)
+    if mechanism.is_platform:
+        return _platform(mechanism)
+    if mechanism.search is not None:
+        return _searching(mechanism)
+    closed = assembled(mechanism, pose_at_axes(mechanism))
+    forward = closed.forward
+    inverse = solve_pose(mechanism)
+    refuse_shared_names(mechanism, (*forward.statements, *inverse.naming, *inverse.derivation.statements))
+    assignments = assign(mechanism, inverse, forward)
+    at_axes = derivation_at_axes(mechanism, inverse, forward)
+    margins = margin_lets(mechanism, assignments)
+    jacobian = jacobian_program(mechanism, forward)
+    slopes, measures = assignments, inverse.derivation.measures
+    factors = [*(factor_of(mechanism, a) for a in slopes), *(factor_of(mechanism, m) for m in measures)]
+    if mechanism.assembly is not None and closed.margin is not None:
+        factors.append(Factor(mechanism.assembly.margin, closed.margin))
+    singularity, kept = singularity_program(mechanism, at_axes, factors, jacobian)
+    statements = with_branch_signs(inverse.derivation.statements, assignments)
+    forward_only = replace(forward, statements=at_axes)
+    programs = [
+        forward_program(mechanism, forward_only, margins),
+        orientation_program(forward),
+        inverse_program("branch", mechanism, inverse, statements, _last(mechanism, closed, statements, offset=False)),
+        _limits_program(mechanism),
+        singularity,
+        jacobian,
+        _image_program(mechanism),
+    ]
+    if mechanism.task.turning is not Turning.NONE:
+        programs.append(_projection_program(mechanism))
+    if _turns_in_a_coupling(mechanism):
+        programs.append(twist_program(mechanism, forward))
+    if mechanism.is_orientation:
+        programs += coupling_programs(mechanism)
+    elif mechanism.offset_interface:
+        programs += _offset_programs(mechanism, closed)
+    return _finished(mechanism, programs, kept)
+
+
+def _platform(mechanism: Mechanism) -> Kinematics:
+    """A platform that moves with its whole pose: forward kinematics iterates, one determinant is the margin."""
+    inverse = solve_pose(mechanism)
+    if inverse.derivation.slopes or mechanism.branches:
+        raise DescriptionError("a platform that moves freely has no branches: its closure must determine every joint")
+    statements = inverse.derivation.statements
+    search = search_program(mechanism)
+    forward, from_start = (found_from(mechanism, start, search) for start in (at_home(mechanism), at_given()))
+    checks = (*platform_checks(mechanism, (*inverse.naming, *statements)), *bound_checks(mechanism, offset=False))
+    programs = [
+        forward_program(mechanism, forward, ()),
+        replace(forward_program(mechanism, from_start, ()), name="forward_from"),
+        orientation_program(forward),
+        inverse_program("branch", mechanism, inverse, statements, checks),
+        _limits_program(mechanism),
+        platform_singularity(forward.statements),
+        jacobian_program(mechanism, forward),
+        _image_program(mechanism),
+        _projection_program(mechanism),
+    ]
+    return _finished(mechanism, programs, (Margin(MARGIN, -1, "type 2"),))
+
+
+def _searching(mechanism: Mechanism) -> Kinematics:
+    """A chain that one parameter keeps from having a closed form: searched along one joint, one determinant is the margin."""
+    both = solve_both(mechanism)
+    statements, margins = margin_statements(both)
+    determinant, scaled = determinant_margin(both)
+    margin = Let(real(f"margin_{DETERMINANT.name}"), scaled)
+    programs = [
+        forward_program(mechanism, replace(both.forward, statements=statements), margins),
+        orientation_program(both.forward),
+        inverse_program("branch", mechanism, both.closed, branch_statements(both)),
+        search_given(both),
+        from_joints(mechanism),
+        _limits_program(mechanism),
+        assemble("singularity", (*both.forward.statements, *determinant, margin), [Output(DETERMINANT.name, margin.name)]),
+        jacobian_program(mechanism, both.forward),
+        _image_program(mechanism),
+        _projection_program(mechanism),
+    ]
+    return _finished(mechanism, programs, (Margin(DETERMINANT.name, 1, "type 1"),))
+
+
+def _count(mechanism: Mechanism) -> None:
+    """More conditions than joints or coordinates cannot be met, and no step would notice."""
+    rows, joints, equations = jacobian_rows(mechanism), mechanism.joints, mechanism.equations
+    commanded = f"{len(rows)} quantities ({', '.join(rows)})"
+    if len(rows) > len(joints):
+        raise DescriptionError(f"the task commands {commanded}, and there are only {len(joints)} joints")
+    if len(equations) > len(rows):
+        raise DescriptionError(f"the closure has {len(equations)} equations, and the task commands only {commanded}")
+
+
+def _finished(mechanism: Mechanism, programs: Sequence[Program], margins: tuple[Margin, ...]) -> Kinematics:
+    """Everything together, with what depends on parameters alone moved into the setup."""
+    parameters = machine_parameters(mechanism)
+    constants = {o.name for o in setup_program(mechanism, parameters, ()).outputs}
+    lowered, hoisted = hoist((*shared(programs), *programs), constants)
+    setup = setup_program(mechanism, parameters, hoisted)
+    settable = setup_program(mechanism, parameters, hoisted, has_settings=True) if mechanism.period_joints else None
+    finished = {program.name: program for program in lowered}
+    called = {program.name for program in shared(lowered)}
+    for program in (p for p in lowered if p.name not in called):  # a caller gives what those read
+        _check_inputs(mechanism, program, {o.name for o in setup.outputs})
+    return Kinematics(
+        mechanism=mechanism,
+        parameters=parameters,
+        setup=setup,
+        forward=finished["forward"],
+        orientation=finished["orientation"],
+        branch=finished["branch"],
+        limits=finished["limits"],
+        singularity=finished["singularity"],
+        jacobian=finished["jacobian"],
+        image=finished["image"],
+        projection=finished.get("projection"),
+        offset_branch=finished.get("offset_branch"),
+        offset_configuration=finished.get("offset_configuration"),
+        rows=jacobian_rows(mechanism),
+        margins=margins,
+        freedom=_freedom(mechanism),
+        reads_rotation=mechanism.task.turning is not Turning.NONE,
+        setup_less_windows=settable,
+        forward_from=finished.get("forward_from"),
+        search_given=finished.get("search_given"),
+        from_joints=finished.get("from_joints"),
+        twist=finished.get("twist"),
+        compatible=finished.get("compatible"),
+        carried=finished.get("carried"),
+        total_image=finished.get("total_image"),
+    )
+
+
+def _check_inputs(mechanism: Mechanism, program: Program, constants: set[str]) -> None:
+    """A free name that is nobody's input is a mistake of the derivation: find it here, not in a generated file."""
+    allowed = constants | {"x", "y", "z", "point_x", "point_y", "point_z"} | {r.name for r in ROTATION_ENTRIES}
+    allowed |= {f"sigma_{b.name}" for b in mechanism.branches}
+    allowed |= {j.symbol.name for j in mechanism.joints} if program.name == "from_joints" else set()
+    allowed |= {s.name for j in mechanism.joints for s in (j.axis, j.reference, j.turn)}
+    allowed |= {s.name for s in (*START_POSITION, *START_ROTATION, *FLANGE_AXIS, *BASE_AXIS)}
+    strangers = [s.name for s in program.inputs if s.name not in allowed]
+    if strangers:
+        raise DescriptionError(f"the {program.name} program reads {', '.join(strangers)}, which nothing gives")
+
+
+def _last(
+    mechanism: Mechanism, closed: Assembled, statements: tuple[Statement, ...], *, offset: bool
+) -> tuple[Statement, ...]:
+    """What must hold at a solution of the inverse, beyond the closure."""
+    return (*assembly_checks(mechanism, closed, statements, offset), *bound_checks(mechanism, offset))
+
+
+def _offset_programs(mechanism: Mechanism, closed: Assembled) -> list[Program]:
+    forward = closed.forward
+    try:
+        inverse = solve_offset(mechanism)
+        refuse_shared_names(mechanism, (*inverse.naming, *inverse.derivation.statements))
+        assignments = assign(mechanism, inverse, forward, optional_zero=bool(inverse.frozen))
+    except (Unsolved, DescriptionError) as problem:
+        raise type(problem)(f"with offset_interface=False it could be built, but for a point off the flange {problem}") from None
+    statements = with_branch_signs(inverse.derivation.statements, assignments)
+    return [
+        inverse_program("offset_branch", mechanism, inverse, statements, _last(mechanism, closed, statements, offset=True)),
+        _offset_configuration(mechanism, inverse, forward, assignments),
+    ]
+
+
+def _offset_configuration(
+    mechanism: Mechanism, inverse: Inverse, forward: Forward, assignments: tuple[Assignment, ...]
+) -> Program:
+    margins = margin_lets(mechanism, assignments)
+    outputs = [Output(m.name.name, m.name) for m in margins]
+    known = derivation_at_axes(mechanism, inverse, at_point(forward))
+    draft = assemble("offset_configuration", (*known, *margins), outputs)
+    points = [s for s in draft.inputs if s.name.startswith("point_")]
+    return assemble("offset_configuration", (*finite(points), *draft.body), draft.outputs)
+
+
+def _limits_program(mechanism: Mechanism) -> Program:
+    """Every axis, those with several turns first, then every quantity with limits of its own, inside its widened limits."""
+    turning_first = sorted(mechanism.joints, key=lambda j: not j.multi_turn)  # what a turn carries along follows it
+    body: list[Statement] = [_inside(j.key, j.axis, f"limits of {j.name}") for j in turning_first]
+    if mechanism.limited:
+        body += joint_lets(mechanism)
+    for quantity in mechanism.limited:
+        lets, (value,) = named_trigonometry(mechanism, [quantity.value / (DEGREE if quantity.is_angle else 1)])
+        name = real(f"value_{quantity.name}")
+        body += [*lets, Let(name, value, quantity.meaning), _inside(quantity.name, name, f"limits of {quantity.meaning}")]
+    return assemble("limits", body, [])
+
+
+def _inside(key: str, value: sp.Symbol, note: str) -> Require:
+    condition = sp.And(sp.Ge(value, real(f"lowest_{key}")), sp.Le(value, real(f"highest_{key}")))
+    return Require(condition, Status.UNREACHABLE, note)
+
+
+def _projection_program(mechanism: Mechanism) -> Program:
+    """The nearest rotation that the flange can have; of a direction, any twist about it."""
+    if mechanism.task.turning in (Turning.DIRECTION, Turning.FULL):
+        own = [Output(r.name, r) for r in ROTATION_ENTRIES]
+        return assemble("projection", (), own)
+    assert mechanism.chain is not None
+    cos_heading, sin_heading = real("cos_heading"), real("sin_heading")
+    turned = sp.Matrix([[cos_heading, -sin_heading, 0], [sin_heading, cos_heading, 0], [0, 0, 1]])
+    rotation = turned * flange_rotation(mechanism.chain)
+    outputs = [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, rotation, strict=True)]
+    return assemble("projection", heading_lets(mechanism), outputs)
+
+
+def _turns_in_a_coupling(mechanism: Mechanism) -> bool:
+    """Whether a coupling with this mechanism needs to know how its frame turns: the task's rows do not say all of it."""
+    return (mechanism.is_position or mechanism.is_orientation) and _freedom(mechanism) is not Freedom.ZERO
+
+
+def _freedom(mechanism: Mechanism) -> Freedom:
+    """Stated closures keep their orientation or follow all of it; a chain's rotation may turn about z with the joints."""
+    if mechanism.task.turning is Turning.FULL:
+        return Freedom.THREE
+    if mechanism.chain is None:
+        return Freedom.ZERO
+    joints = {j.symbol for j in mechanism.joints}
+    turns = [t for t in pose_of(mechanism.chain).turns if t.amount.free_symbols & joints]
+    return Freedom.ZERO if not turns else Freedom.THREE if is_spatial(mechanism.chain) else Freedom.ONE
+
+
+def _image_program(mechanism: Mechanism) -> Program:
+    """All orientations of the flange: one of them, and the axis about which it turns, in both frames."""
+    zero = sp.eye(3)
+    axis = sp.Matrix([0, 0, 1])
+    if mechanism.chain is not None and _freedom(mechanism) is not Freedom.THREE:
+        zero = sp.Matrix(pose_of(mechanism.chain).rotation)
+        if _freedom(mechanism) is Freedom.ONE:
+            heading_of(mechanism.chain)  # refuses a chain whose rotation is not one turn about z
+            zero = sp.Matrix(flange_rotation(mechanism.chain))
+    moving = zero.T * axis
+    outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, zero, strict=True)]
+    outputs += [Output(f"rot_{c}", v) for c, v in zip("xyz", axis, strict=True)]
+    outputs += [Output(f"u_{c}", v) for c, v in zip("xyz", moving, strict=True)]
+    return assemble("image", (), outputs)

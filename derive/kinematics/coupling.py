@@ -1,0 +1,152 @@
+"""What an orientation kinematics carries, and so what it can be combined with.
+
+Its end point has parts that the flange, the wrist between its axes, and the tool hold. A shift along the axis of the
+turns before it is the flange's, one along the axis of the turns behind it is the tool's, any other is the wrist's.
+A flange that keeps its orientation carries all of them. One that the position axes turn is not known before them, so
+that only these may be there: the flange's part along the axis that the flange turns about, and the tool's part as far
+as the commanded rotation, which is met, says where it points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.description.mechanism import (
+    Mechanism,
+    Turning,
+)
+from derive.equations.axes import finite
+from derive.equations.closure import flange_rotation
+from derive.geometry.frames import Factor, Motion
+from derive.ir.constants import (
+    HELD,
+)
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Root,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    BASE_AXIS,
+    COORDINATE_NAMES,
+    FLANGE_AXIS,
+    ROTATION_ENTRIES,
+    real,
+)
+
+_ALONG = real("flange_along")
+_ACROSS = "off the axis that the flange turns about"
+_BETWEEN = "between the axes: only a flange that keeps its orientation tells where that is"
+_UNMET = "turns in a way that nothing commands"
+_ROTATION = sp.Matrix(3, 3, list(ROTATION_ENTRIES))
+_MET: dict[Turning, tuple[int, ...]] = {
+    Turning.NONE: (),
+    Turning.ABOUT_Z: (),
+    Turning.DIRECTION: (2,),
+    Turning.FULL: (0, 1, 2),
+}
+"""The columns of the commanded rotation that are met whatever the flange's turn is."""
+
+
+@dataclass(frozen=True)
+class Carried:
+    """The end point in parts: as the flange sees it, as the tool sees it, and the size of what is between."""
+
+    flange: tuple[sp.Expr, ...]
+    tool: tuple[sp.Expr, ...]
+    wrist: sp.Expr
+
+
+def carried_by(mechanism: Mechanism) -> Carried:
+    """The parts of the end point of a chain."""
+    assert mechanism.chain is not None
+    factors = mechanism.chain.factors
+    flange, tool = [sp.Integer(0)] * 3, [sp.Integer(0)] * 3
+    between: list[sp.Expr] = []
+    for i, factor in enumerate(factors):
+        if factor.motion is not Motion.SHIFT:
+            continue
+        if _all_about(factors[:i], factor.axis):
+            flange[factor.axis] += factor.amount
+        elif _all_about(factors[i:], factor.axis):
+            tool[factor.axis] += factor.amount
+        else:
+            between.append(factor.amount)
+    return Carried(tuple(flange), tuple(tool), _size(between))
+
+
+def coupling_programs(mechanism: Mechanism) -> tuple[Program, ...]:
+    """What a coupling asks of an orientation kinematics: see `Kinematics`."""
+    found = (_compatible(mechanism), _carried(mechanism))
+    return found if _MET[mechanism.task.turning] else (*found, _total_image(mechanism))
+
+
+def _compatible(mechanism: Mechanism) -> Program:
+    parts = carried_by(mechanism)
+    across = [s - a * _ALONG for s, a in zip(parts.flange, FLANGE_AXIS, strict=True)]
+    unmet = [s for k, s in enumerate(parts.tool) if k not in _MET[mechanism.task.turning]]
+    lengths = [p.symbol for p in mechanism.parameters if p.unit == "u"]
+    unnoticed = real("unnoticed_shift")
+    body: list[Statement] = [Let(unnoticed, HELD * sp.Add(*map(sp.Abs, lengths)), "as much may turn with the flange")]
+    if any(parts.flange):
+        body += [*finite(FLANGE_AXIS), *_along(parts), Let(real("flange_offset"), _size(across), _ACROSS)]
+        body.append(Require(sp.Le(real("flange_offset"), unnoticed), Status.INVALID_COUPLING))
+    for name, value, note in (("wrist_offset", parts.wrist, _BETWEEN), ("unmet_offset", _size(unmet), _UNMET)):
+        if value != 0:
+            body += [Let(real(name), value, note), Require(sp.Le(real(name), unnoticed), Status.INVALID_COUPLING)]
+    return assemble("compatible", body, [])
+
+
+def _carried(mechanism: Mechanism) -> Program:
+    parts, met = carried_by(mechanism), _MET[mechanism.task.turning]
+    tool = sp.Matrix([s if k in met else 0 for k, s in enumerate(parts.tool)])
+    place = _ROTATION * tool
+    body: list[Statement] = []
+    if any(parts.flange):
+        place += sp.Matrix(BASE_AXIS) * _ALONG
+        body += [*finite((*FLANGE_AXIS, *BASE_AXIS)), *_along(parts)]
+    return assemble("carried", body, [Output(c, v) for c, v in zip(COORDINATE_NAMES, place, strict=True)])
+
+
+def _total_image(mechanism: Mechanism) -> Program:
+    """The image on a flange: of a turn about one axis, and whether that is the flange's; without a turn, the flange's image."""
+    assert mechanism.chain is not None
+    own = sp.Matrix(flange_rotation(mechanism.chain))
+    outputs = [Output(f"zero_{r.name}", v) for r, v in zip(ROTATION_ENTRIES, _ROTATION * own, strict=True)]
+    read = [*FLANGE_AXIS]
+    axis = sp.Matrix([0, 0, 1])
+    rot, u, apart = sp.Matrix(BASE_AXIS), own.T * sp.Matrix(FLANGE_AXIS), sp.Integer(0)
+    if mechanism.task.turning is Turning.NONE:
+        read += BASE_AXIS
+    else:
+        rot, u, apart = _ROTATION * axis, own.T * axis, _size(list(axis.cross(sp.Matrix(FLANGE_AXIS))))
+    outputs += [Output(f"rot_{c}", v) for c, v in zip(COORDINATE_NAMES, rot, strict=True)]
+    outputs += [Output(f"u_{c}", v) for c, v in zip(COORDINATE_NAMES, u, strict=True)]
+    return assemble("total_image", finite(read), [*outputs, Output("apart", apart)])
+
+
+def _along(parts: Carried) -> tuple[Let, ...]:
+    along = sp.Add(*[s * a for s, a in zip(parts.flange, FLANGE_AXIS, strict=True)])
+    return (Let(_ALONG, along, "what the flange holds, along the axis that it turns about"),)
+
+
+def _size(values: Sequence[sp.Expr]) -> sp.Expr:
+    """The length of a vector; a single entry has no square root."""
+    found = [v for v in values if v != 0]
+    if len(found) < 2:
+        return sp.Abs(found[0]) if found else sp.Integer(0)
+    return Root(sp.Add(*[v**2 for v in found]))
+
+
+def _all_about(factors: Sequence[Factor], axis: int) -> bool:
+    return all(f.axis == axis for f in factors if f.motion is not Motion.SHIFT)

@@ -1,0 +1,268 @@
+"""The Jacobian, from A x' + B q' = 0, and the singularity margins that multiply to its determinant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from derive.description.mechanism import (
+    DescriptionError,
+    Mechanism,
+    Turning,
+)
+from derive.equations.chain_splits import is_spatial
+from derive.equations.closure import with_fixed_names
+from derive.equations.named_pose import walk
+from derive.equations.pose_at_axes import (
+    Forward,
+)
+from derive.equations.problem import Measure
+from derive.equations.trigonometry import named_trigonometry
+from derive.geometry.frames import Chain, Motion
+from derive.geometry.pose import Screw, pose_of
+from derive.ir.constants import (
+    FREE_ANGLE,
+)
+from derive.ir.interpret import run
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    ROTATION_ENTRIES,
+    SCALE,
+    real,
+)
+from derive.kinematics.branch_assignment import Assignment
+from derive.kinematics.kinematics import Margin
+from derive.kinematics.parameters import (
+    has_length,
+    machine_parameters,
+)
+from derive.kinematics.sampling import sample_axes, sample_machine
+from derive.plate.plate import platform_jacobian
+
+_ROWS = ("x", "y", "z", "turn x", "turn y", "turn z", "tilt x", "tilt y")
+"""Of a twist: along and about the axes of the base, and about the x and y of the tool, which tilt its z."""
+_TURNS: dict[Turning, tuple[str, ...]] = {
+    Turning.NONE: (),
+    Turning.ABOUT_Z: ("turn z",),
+    Turning.DIRECTION: ("tilt x", "tilt y"),
+    Turning.FULL: ("turn x", "turn y", "turn z"),
+}
+
+
+def jacobian_rows(mechanism: Mechanism) -> tuple[str, ...]:
+    """The task's rows: commanded positions, then the commanded turn."""
+    return (*mechanism.task.position, *_TURNS[mechanism.task.turning])
+
+
+def jacobian_program(mechanism: Mechanism, forward: Forward) -> Program:
+    """Rows of the task by axes; rotary axes per radian."""
+    if mechanism.is_platform:
+        solved, twists = platform_jacobian(mechanism, _motor_matrix(mechanism))
+        return assemble("jacobian", (*forward.statements, *solved), _entries_of(twists, len(mechanism.joints)))
+    statements, values = jacobian_entries(mechanism)
+    return assemble("jacobian", (*forward.statements, *statements), _entries_of(values, len(mechanism.joints)))
+
+
+def twist_program(mechanism: Mechanism, forward: Forward) -> Program:
+    """All six rows of the twist of a chain's end, whatever the task is: what a coupling asks for."""
+    lets, values = _per_motor(mechanism, _by_screws(mechanism, _ROWS[:6]))
+    return assemble("twist", (*forward.statements, *lets), _entries_of(values, len(mechanism.joints)))
+
+
+def jacobian_entries(mechanism: Mechanism) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
+    """The entries by rows at a pose that forward kinematics has found, and statements that they need besides."""
+    if mechanism.chain is not None:
+        return _per_motor(mechanism, _by_screws(mechanism, jacobian_rows(mechanism)))
+    matrix, naming = _by_closure(mechanism)
+    lets, values = _per_motor(mechanism, matrix)
+    return (*naming, *lets), values
+
+
+def _per_motor(mechanism: Mechanism, matrix: sp.Matrix) -> tuple[tuple[Let, ...], list[sp.Expr]]:
+    """The entries by motors, their sines and cosines under names."""
+    coupled = matrix * _motor_matrix(mechanism)
+    planar = mechanism.chain is not None and not is_spatial(mechanism.chain)
+    entries = [sp.expand_mul(e) if planar else e for e in coupled]
+    lets, values = named_trigonometry(mechanism, entries)
+    return lets, values
+
+
+def _entries_of(values: Sequence[sp.Expr], width: int) -> list[Output]:
+    return [Output(f"j{k // width + 1}{k % width + 1}", v) for k, v in enumerate(values)]
+
+
+def _by_screws(mechanism: Mechanism, rows: Sequence[str]) -> sp.Matrix:
+    """A serial chain: every factor moves the end as a screw (z × p), scaled by how each joint moves the factor."""
+    assert mechanism.chain is not None
+    screws, position = _screws(mechanism, mechanism.chain)
+    columns = []
+    for joint in mechanism.joints:
+        column = sp.zeros(6, 1)
+        for screw in screws:
+            rate = sp.diff(screw.amount, joint.symbol)
+            if rate != 0:
+                column += rate * _twist(screw, position)
+        columns.append(column)
+    full = sp.Matrix.hstack(sp.zeros(6, 0), *columns)
+    if mechanism.task.turning is Turning.DIRECTION:
+        rotation = sp.Matrix(3, 3, list(ROTATION_ENTRIES))
+        full = sp.Matrix.vstack(full, (rotation.T * full[3:, :])[:2, :])
+    chosen = [_ROWS.index(row) for row in rows]
+    return full.extract(chosen, list(range(full.cols)))
+
+
+def _screws(mechanism: Mechanism, chain: Chain) -> tuple[tuple[Screw, ...], sp.ImmutableMatrix]:
+    """The screws of a chain and the place of its end; of a chain in space in the names of its frames."""
+    if is_spatial(chain):
+        return walk(mechanism).screws, sp.ImmutableMatrix([real(c) for c in COORDINATE_NAMES])
+    pose = pose_of(chain)
+    return pose.screws, pose.position
+
+
+def _twist(screw: Screw, position: sp.ImmutableMatrix) -> sp.Matrix:
+    direction = sp.Matrix(screw.direction)
+    if screw.motion is Motion.SHIFT:
+        return sp.Matrix.vstack(direction, sp.zeros(3, 1))
+    return sp.Matrix.vstack(direction.cross(sp.Matrix(position - screw.origin)), direction)
+
+
+def _by_closure(mechanism: Mechanism) -> tuple[sp.Matrix, tuple[Statement, ...]]:
+    """Stated equations: -A^-1 B with A = dΦ/dx, B = dΦ/dq, by the adjugate; singular where det A vanishes (type 2)."""
+    closure = sp.Matrix([with_fixed_names(mechanism, e) for e in mechanism.equations])
+    by_pose = closure.jacobian([real(c) for c in mechanism.task.position])
+    by_joints = closure.jacobian([j.symbol for j in mechanism.joints])
+    if by_pose.rows != by_pose.cols:
+        raise DescriptionError(f"{by_pose.rows} closure equations for {by_pose.cols} commanded coordinates")
+    if not by_pose.free_symbols:
+        return -by_pose.inv() * by_joints, ()
+    entries, lets = _entries(mechanism, by_pose, mechanism.task.position)
+    drives, more = _entries(mechanism, by_joints, [j.key for j in mechanism.joints])
+    determinant, divisor = real("determinant"), real("determinant_divisor")
+    determined = sp.Gt(sp.Abs(determinant), FREE_ANGLE * SCALE**by_pose.rows)
+    statements: tuple[Statement, ...] = (
+        *lets,
+        *more,
+        Let(determinant, entries.det(), "of the closure by the position: zero in a type 2 singularity"),
+        Require(determined, Status.IMPOSSIBLE, "nothing controls the plate"),
+        Let(divisor, Select(determined, determinant, sp.Integer(1))),
+    )
+    return -entries.adjugate() * drives / divisor, statements
+
+
+def _entries(
+    mechanism: Mechanism, matrix: sp.Matrix, names: Sequence[str]
+) -> tuple[sp.Matrix, tuple[Let, ...]]:
+    """The entries of a matrix of derivatives under names of their own, `slope_<equation>_by_<unknown>`."""
+    trigonometric, values = named_trigonometry(mechanism, list(matrix))
+    lets: list[Let] = [*trigonometric]
+    entries = []
+    for k, value in enumerate(values):
+        if value != 0:
+            lets.append(Let(real(f"slope_{k // matrix.cols + 1}_by_{names[k % matrix.cols]}"), value))
+        entries.append(lets[-1].name if value != 0 else sp.Integer(0))
+    return sp.Matrix(matrix.rows, matrix.cols, entries), tuple(lets)
+
+
+def _motor_matrix(mechanism: Mechanism) -> sp.Matrix:
+    """How the motors move the joints: the identity, and the gear couplings."""
+    motors = [j.motor for j in mechanism.joints]
+    return sp.Matrix(len(motors), len(motors), [sp.diff(j.motor + j.coupling, m) for j in mechanism.joints for m in motors])
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A candidate margin: a slope or measure over its scale, at axis values."""
+
+    name: str
+    value: sp.Expr
+    is_length: bool = False
+    """Whether it has the user's unit, because the machine has no length to compare it with."""
+    is_signed: bool = True
+
+    @property
+    def lets(self) -> tuple[Let, ...]:
+        """The margin; of a length, whether it is more than what leaves an axis free."""
+        margin = real(f"margin_{self.name}")
+        if not self.is_length:
+            return (Let(margin, self.value),)
+        length = real(f"length_{self.name}")
+        other = Select(sp.Lt(length, -FREE_ANGLE), sp.Integer(-1), sp.Integer(0)) if self.is_signed else sp.Integer(0)
+        told = Select(sp.Gt(length, FREE_ANGLE), sp.Integer(1), other)
+        return Let(length, self.value), Let(margin, told, "1, and 0 where nothing determines the axis")
+
+
+def factor_of(mechanism: Mechanism, found: Assignment | Measure) -> Factor:
+    """The slope of a branch, or a measure, over its scale."""
+    has_unit = not has_length(machine_parameters(mechanism))
+    if isinstance(found, Assignment):
+        return Factor(found.branch.margin, found.margin(mechanism), has_unit and found.slope.scale.has(SCALE))
+    return Factor(found.name, found.value / found.scale, has_unit and found.scale.has(SCALE), is_signed=False)
+
+
+def singularity_program(
+    mechanism: Mechanism, statements: Sequence[Statement], factors: Sequence[Factor], jacobian: Program
+) -> tuple[Program, tuple[Margin, ...]]:
+    """The margins that multiply to the determinant of the Jacobian, and their integer exponents."""
+    lets = [let for f in factors for let in f.lets]
+    lengths = {f.name: Output(f"length_{f.name}", f.lets[0].name) for f in factors if f.is_length}
+    told = {f.name: Output(f.name, f.lets[-1].name) for f in factors}
+    outputs = [lengths.get(f.name, told[f.name]) for f in factors]
+    if not mechanism.joints:
+        return assemble("singularity", statements, []), ()
+    draft = assemble("singularity", (*statements, *lets), outputs)
+    exponents = _exponents(mechanism, draft, jacobian)
+    kept = [(f.name, e) for f, e in zip(factors, exponents, strict=True) if e != 0]
+    shown = [o for name, _ in kept for o in (told[name], *([lengths[name]] if name in lengths else []))]
+    program = assemble("singularity", (*statements, *lets), shown)
+    of_length = {name: output.name for name, output in lengths.items()}
+    return program, tuple(Margin(n, e, "type 1" if e > 0 else "type 2", of_length.get(n)) for n, e in kept)
+
+
+def _exponents(mechanism: Mechanism, margins: Program, jacobian: Program) -> list[int]:
+    """Fit log|det J| = c + Σ e_k log|m_k| over poses of one machine; the e_k must be integers and the fit exact."""
+    machine = sample_machine(mechanism, 11)
+    samples = {**machine, **sample_axes(mechanism, machine, 64, 12)}
+    values, status = run(margins, samples)
+    entries, _ = run(jacobian, samples)
+    good = np.broadcast_to(status == Status.OK, (64,))
+    rows, columns = len(jacobian_rows(mechanism)), len(mechanism.joints)
+    matrix = np.stack([np.broadcast_to(v, (64,)) for v in entries.values()], axis=-1).reshape(64, rows, columns)[good]
+    volume = np.log(np.sqrt(np.abs(np.linalg.det(matrix @ matrix.transpose(0, 2, 1)))))
+    logs = [np.log(np.abs(np.broadcast_to(values[o.name], (64,))[good])) for o in margins.outputs]
+    own = _independent(logs)
+    design = np.stack([*(logs[k] for k in own), np.ones_like(volume)], axis=-1)
+    solution, *_ = np.linalg.lstsq(design, volume, rcond=None)
+    found = dict(zip(own, (int(round(e)) for e in solution[:-1]), strict=True))
+    exponents = [found.get(k, 0) for k in range(len(logs))]
+    fitted = sum((e * log for e, log in zip(exponents, logs, strict=True)), np.zeros_like(volume))
+    spread = float(np.ptp(volume - fitted)) if volume.size else 0.0
+    if spread > 1e-6:
+        raise DescriptionError(f"the margins {[o.name for o in margins.outputs]} do not multiply to the determinant")
+    return exponents
+
+
+def _independent(logs: Sequence[NDArray[np.float64]]) -> list[int]:
+    """The margins that no earlier ones make up: the measure of a two-root step is the size of its slope."""
+    own: list[int] = []
+    for k in range(len(logs)):
+        columns = np.stack([logs[i] for i in (*own, k)] + [np.ones_like(logs[k])], axis=-1)
+        if np.linalg.matrix_rank(columns, tol=1e-6) == len(own) + 2:
+            own.append(k)
+    return own
+

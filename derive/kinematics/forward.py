@@ -1,0 +1,195 @@
+"""Forward kinematics: from axis values to the pose, and everything that is read off a set of axis values."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, sine
+from derive.description.mechanism import (
+    DescriptionError,
+    Mechanism,
+    Turning,
+)
+from derive.equations.axes import finite, frozen_lets, joint_lets
+from derive.equations.chain_splits import is_spatial
+from derive.equations.closure import (
+    all_angles,
+    angles_of,
+    fixed_lets,
+    heading_of,
+    position_closure,
+    signs_of,
+)
+from derive.equations.named_pose import walk
+from derive.equations.pose_at_axes import Forward
+from derive.equations.problem import Problem
+from derive.equations.trigonometry import named_trigonometry
+from derive.geometry.pose import pose_of
+from derive.ir.constants import (
+    BOUNDARY,
+    LIMIT,
+)
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Statement,
+    Status,
+    rewritten,
+)
+from derive.ir.symbols import (
+    ASSEMBLY_SIGN,
+    COORDINATE_NAMES,
+    HEADING,
+    OFFSET,
+    ROTATION_ENTRIES,
+    SCALE,
+    real,
+)
+from derive.kinematics.inverse import Inverse
+from derive.solver.solve import Derivation, solve
+
+
+def pose_at_axes(mechanism: Mechanism) -> Forward:
+    """The pose of a mechanism at its axis values; quantities that must be positive are required to be."""
+    checks = (*finite([j.axis for j in mechanism.joints]), *joint_lets(mechanism), *_positive(mechanism))
+    if mechanism.chain is not None and is_spatial(mechanism.chain):
+        return _walked(mechanism, checks)
+    if mechanism.chain is not None:
+        pose = pose_of(mechanism.chain)
+        lets, values = named_trigonometry(mechanism, [*pose.position, *pose.rotation])
+        position = tuple(Let(real(c), v) for c, v in zip(COORDINATE_NAMES, values[:3], strict=True))
+        return Forward((*checks, *lets, *position), tuple(p.name for p in position), tuple(values[3:]))
+    joints = angles_of(mechanism)
+    trigonometric = tuple(Let(f(a), g(a)) for a in joints for f, g in ((cosine, sp.cos), (sine, sp.sin)))
+    derivation = _solve_for_position(mechanism)
+    slope = derivation.slopes[0] if derivation.slopes else None
+    known = (*checks, *fixed_lets(mechanism), *trigonometric, *_in_assembly_mode(derivation, mechanism))
+    position_values = tuple(real(c) if c in mechanism.task.position else sp.Integer(0) for c in COORDINATE_NAMES)
+    return Forward(known, position_values, tuple(sp.eye(3)), slope)
+
+
+def _walked(mechanism: Mechanism, checks: tuple[Statement, ...]) -> Forward:
+    """The pose of a chain that turns about several axes, frame by frame."""
+    walked = walk(mechanism)
+    names = (*(real(c) for c in COORDINATE_NAMES), *ROTATION_ENTRIES)
+    pose = tuple(Let(n, v) for n, v in zip(names, (*walked.position, *walked.rotation), strict=True))
+    return Forward((*checks, *walked.statements, *pose), names[:3], names[3:])
+
+
+def _solve_for_position(mechanism: Mechanism) -> Derivation:
+    """The stated closure solved for x, y and z: the same peeling, the joints known."""
+    closure = position_closure(mechanism)
+    problem = Problem(
+        angles=(),
+        lengths=tuple(real(c) for c in mechanism.task.position),
+        equations=closure.equations,
+        units=all_angles(mechanism),
+        free={},
+        scale=SCALE,
+        signs=signs_of(mechanism),
+    )
+    derivation = solve(problem, (), lambda angle: ())
+    if len(derivation.slopes) > 1 or bool(derivation.slopes) != (mechanism.assembly is not None):
+        raise DescriptionError(f"forward kinematics has {len(derivation.slopes)} two-root steps: one assembly names one")
+    return derivation
+
+
+def _in_assembly_mode(derivation: Derivation, mechanism: Mechanism) -> tuple[Statement, ...]:
+    """The derivation on the side that the machine is assembled on; where it does not close, no assembly is possible."""
+    sides = {s.sigma: ASSEMBLY_SIGN for s in derivation.slopes}
+    chosen = (rewritten(s, lambda e: e.xreplace(sides)) for s in derivation.statements)
+    return tuple(replace(s, otherwise=Status.IMPOSSIBLE) if isinstance(s, Require) else s for s in chosen)
+
+
+def _positive(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """Forward kinematics refuses the mirror that the machine does not have."""
+    checks: list[Statement] = []
+    lengths = {j.symbol for j in mechanism.joints if not j.is_angle}
+    bounded = {j.symbol for j in mechanism.joints if j.domain is not None}
+    for value in (v for v in mechanism.positive if not v.free_symbols <= bounded):  # a domain says it already
+        scale = SCALE if value.free_symbols & lengths else sp.Integer(1)
+        lets, (named,) = named_trigonometry(mechanism, [value])
+        condition = sp.Ge(named, -BOUNDARY * scale)
+        checks += [*lets, Require(condition, Status.IMPOSSIBLE, "the mirror that the machine does not have")]
+    return (*checks, *_domains(mechanism))
+
+
+def _domains(mechanism: Mechanism) -> tuple[Require, ...]:
+    """A joint without turns has one value for every pose: beyond its domain forward and inverse would not agree."""
+    checks: list[Require] = []
+    for joint in mechanism.joints:
+        if joint.domain is None:
+            continue
+        low, high = (sp.Integer(int(v)) for v in joint.domain)
+        value = joint.axis - joint.offset
+        inside = sp.And(sp.Ge(value, low - LIMIT * (1 + abs(low))), sp.Le(value, high + LIMIT * (1 + abs(high))))
+        checks.append(Require(inside, Status.IMPOSSIBLE, f"{joint.name} where the machine has no pose"))
+    return tuple(checks)
+
+
+def at_point(forward: Forward) -> Forward:
+    """The same for a point off the flange: x, y and z are where that point is."""
+    flange = {real(c): real(f"flange_{c}") for c in COORDINATE_NAMES}
+    statements: list[Statement] = [rewritten(s, lambda e: e.xreplace(flange)) for s in forward.statements]
+    statements = [replace(s, name=flange.get(s.name, s.name)) if isinstance(s, Let) else s for s in statements]
+    behind = [sp.sympify(p).xreplace(flange) for p in forward.position]
+    arm = sp.Matrix(3, 3, forward.rotation) * sp.Matrix(OFFSET)
+    point = tuple(Let(real(c), p + a) for c, p, a in zip(COORDINATE_NAMES, behind, arm, strict=True))
+    return replace(forward, statements=(*statements, *point), position=tuple(p.name for p in point))
+
+
+def forward_program(mechanism: Mechanism, forward: Forward, margins: tuple[Let, ...]) -> Program:
+    """Position, rotation, and the signed margin of every branch."""
+    outputs = [Output(c, v) for c, v in zip(COORDINATE_NAMES, forward.position, strict=True)]
+    outputs += _rotation_outputs(forward)
+    outputs += [Output(m.name.name, m.name) for m in margins]
+    return assemble("forward", (*forward.statements, *margins), outputs)
+
+
+def orientation_program(forward: Forward) -> Program:
+    """The rotation alone."""
+    return assemble("orientation", forward.statements, _rotation_outputs(forward))
+
+
+def _rotation_outputs(forward: Forward) -> list[Output]:
+    return [Output(r.name, v) for r, v in zip(ROTATION_ENTRIES, forward.rotation, strict=True)]
+
+
+def derivation_at_axes(mechanism: Mechanism, inverse: Inverse, forward: Forward) -> tuple[Statement, ...]:
+    """What the inverse derivation's names are at given axis values: for slopes and measures.
+
+    Solved sines and cosines become those of the joints; all other names keep their definition.
+    """
+    table = _angle_values(mechanism, inverse)
+    trigonometric = {f(a): Let(f(a), g(v)) for a, v in table.items() for f, g in ((sine, sp.sin), (cosine, sp.cos))}
+    solved = {s for j in mechanism.joints for s in (j.symbol, j.axis, j.motor)}
+    own = {s.name for s in forward.statements if isinstance(s, Let)}
+    naming = [s for j in inverse.frozen for s in frozen_lets(j)]
+    dropped = solved | own | {s.name for s in naming if isinstance(s, Let)} | trigonometric.keys()
+    kept = [
+        s
+        for s in (*inverse.closure.lets, *inverse.derivation.plain)
+        if isinstance(s, Let) and s.name not in dropped
+    ]
+    present = {s.name for s in forward.statements if isinstance(s, Let)}
+    lets = tuple(s for n, s in trigonometric.items() if n not in present)
+    lets += tuple(Let(s.sigma, Select(sp.Ge(s.value, 0), 1, -1)) for s in inverse.derivation.slopes)
+    return (*forward.statements, *lets, *kept)
+
+
+def _angle_values(mechanism: Mechanism, inverse: Inverse) -> dict[sp.Symbol, sp.Expr]:
+    """Every angle that the derivation names, through the joints."""
+    table: dict[sp.Symbol, sp.Expr] = {a: a for a in angles_of(mechanism)}
+    for total in inverse.derivation.sums:
+        table[total.symbol] = sp.Add(*[table[a] * s for a, s in total.terms])
+    if mechanism.chain is not None and mechanism.task.turning is Turning.ABOUT_Z:
+        table[HEADING] = heading_of(mechanism.chain)
+    return table

@@ -1,0 +1,184 @@
+"""Inverse kinematics: one branch of a commanded pose, and of a commanded point off the flange."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, polynomial, sine
+from derive.description.mechanism import (
+    Joint,
+    Mechanism,
+    Turning,
+)
+from derive.equations.axes import axis_lets, finite, free, frozen_lets, plain_angle, reference_lets
+from derive.equations.closure import (
+    Closure,
+    all_angles,
+    closure_at,
+    fixed_lets,
+    flange_rotation,
+    offset_closure,
+    pose_closure,
+    signs_of,
+)
+from derive.equations.problem import Problem
+from derive.geometry.frames import Motion
+from derive.ir.constants import (
+    FREE_ANGLE,
+    PLANE,
+)
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Atan2,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    HEADING,
+    OFFSET,
+    POSITION,
+    ROTATION_ENTRIES,
+    SCALE,
+    real,
+)
+from derive.optimize.simplify import shorter
+from derive.solver.solve import Derivation, solve
+
+
+@dataclass(frozen=True)
+class Inverse:
+    """A solved inverse problem: what names the pose, the derivation, and what frames it."""
+
+    closure: Closure
+    derivation: Derivation
+    naming: tuple[Statement, ...]
+    """Statements that the derivation refers to: the heading, the tool, frozen joints, references."""
+    moving: tuple[Joint, ...]
+    frozen: tuple[Joint, ...] = ()
+
+
+def solve_pose(mechanism: Mechanism) -> Inverse:
+    """Solve the closure of a commanded pose for the joints."""
+    closure = pose_closure(mechanism)
+    derivation = _solve(mechanism, closure, mechanism.joints)
+    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *_heading(mechanism), *closure.lets)
+    return Inverse(closure, derivation, naming, mechanism.joints)
+
+
+def solve_at(mechanism: Mechanism, known: Joint) -> Inverse:
+    """Solve the closure of a commanded pose for all joints but one, which is known: the equations need not agree."""
+    closure = closure_at(mechanism, known)
+    moving = tuple(j for j in mechanism.joints if j != known)
+    return Inverse(closure, _solve(mechanism, closure, moving, is_overdetermined=True), closure.lets, moving)
+
+
+def solve_offset(mechanism: Mechanism) -> Inverse:
+    """Solve the closure of a commanded point; joints that a position cannot determine are frozen."""
+    frozen = _frozen_joints(mechanism)
+    moving = tuple(j for j in mechanism.joints if j not in frozen)
+    closure = offset_closure(mechanism, moving)
+    derivation = _solve(mechanism, closure, moving)
+    kept = tuple(s for j in frozen for s in frozen_lets(j))
+    naming = (*reference_lets(mechanism), *fixed_lets(mechanism), *kept, *closure.lets)
+    return Inverse(closure, derivation, naming, moving, frozen)
+
+
+def _solve(
+    mechanism: Mechanism, closure: Closure, moving: tuple[Joint, ...], *, is_overdetermined: bool = False
+) -> Derivation:
+    joints = {j.symbol: j for j in mechanism.joints}
+    problem = Problem(
+        angles=tuple(j.symbol for j in moving if j.is_angle),
+        lengths=tuple(j.symbol for j in moving if not j.is_angle),
+        equations=closure.equations,
+        units=(*all_angles(mechanism), HEADING),
+        free={j.symbol: free(j) for j in mechanism.joints},
+        scale=SCALE,
+        signs=signs_of(mechanism),
+        is_overdetermined=is_overdetermined,
+        turns=closure.turns,
+        rotation=ROTATION_ENTRIES if closure.turns else (),
+        columns=closure.columns,
+        positive=tuple(polynomial(p, all_angles(mechanism), signs_of(mechanism)) for p in mechanism.positive),
+    )
+    return solve(problem, closure.arguments, lambda angle: (*axis_lets(joints[angle]), plain_angle(joints[angle])))
+
+
+def _frozen_joints(mechanism: Mechanism) -> tuple[Joint, ...]:
+    """The last turning joints of a chain, as many as the position leaves open."""
+    excess = len(mechanism.joints) - len(mechanism.task.position)
+    if mechanism.chain is None or excess <= 0:
+        return ()
+    turning = [f for f in mechanism.chain.factors if f.motion is Motion.TURN]
+    order = [j for f in turning for j in mechanism.joints if j.is_angle and j.symbol in f.amount.free_symbols]
+    return tuple(list(dict.fromkeys(order))[-excess:])
+
+
+def heading_parts(mechanism: Mechanism) -> tuple[sp.Expr, sp.Expr]:
+    """What the cosine and sine of the nearest heading are proportional to: tool direction first, then twist."""
+    assert mechanism.chain is not None
+    relative = sp.Matrix(3, 3, ROTATION_ENTRIES) * flange_rotation(mechanism.chain).T
+    return relative[0, 0] + relative[1, 1], relative[1, 0] - relative[0, 1]
+
+
+def heading_lets(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """The heading of the commanded rotation; there is none where the tool points exactly the wrong way."""
+    along, across = real("heading_along"), real("heading_across")
+    length, divisor = real("heading_length"), real("heading_divisor")
+    determined = sp.Gt(length, FREE_ANGLE)
+    cos_value, sin_value = heading_parts(mechanism)
+    return (
+        Let(along, cos_value, "projection: the tool direction swings to the machine's, the twist is kept"),
+        Let(across, sin_value),
+        Let(length, Root(along**2 + across**2)),
+        Require(determined, Status.UNREACHABLE, "the tool points exactly the opposite way"),
+        Let(divisor, Select(determined, length, sp.Integer(1))),
+        Let(real("cos_heading"), along / divisor),
+        Let(real("sin_heading"), across / divisor),
+    )
+
+
+def _heading(mechanism: Mechanism) -> tuple[Statement, ...]:
+    return heading_lets(mechanism) if mechanism.task.turning is Turning.ABOUT_Z else ()
+
+
+def inverse_program(
+    name: str, mechanism: Mechanism, inverse: Inverse, statements: tuple[Statement, ...], last: tuple[Statement, ...] = ()
+) -> Program:
+    """The program of one branch: checks, derivation with its branch signs named, `last` what must hold then, axis values."""
+    in_plane: tuple[Statement, ...] = ()
+    if inverse.closure.plane is not None:
+        distance = sp.Abs(real("z") - inverse.closure.plane)
+        in_plane = (Require(sp.Le(distance, PLANE * SCALE), Status.UNREACHABLE, "z: a planar machine has none"),)
+    resolved = {s.name for s in statements if isinstance(s, Let)}
+    axes = tuple(
+        of_angle(let, j, resolved)
+        for j in mechanism.joints
+        if j not in inverse.frozen
+        for let in axis_lets(j)
+        if let.name not in resolved
+    )
+    outputs = [Output(j.axis.name, j.axis) for j in mechanism.joints]
+    body = (*inverse.naming, *in_plane, *statements, *last, *axes)
+    draft = assemble(name, body, outputs)
+    groups = (POSITION, OFFSET, tuple(j.reference for j in mechanism.joints))
+    checks = tuple(check for group in groups for check in finite([s for s in group if s in draft.inputs]))
+    return shorter(assemble(name, (*checks, *draft.body), draft.outputs))
+
+
+def of_angle(let: Let, joint: Joint, resolved: set[sp.Symbol]) -> Let:
+    """An axis value of the joint's angle, where that is known by itself."""
+    if joint.symbol not in resolved or joint.axis in resolved:
+        return let
+    direction = Atan2(sine(joint.symbol), cosine(joint.symbol))
+    return Let(let.name, let.value.xreplace({direction: joint.symbol}), let.note)

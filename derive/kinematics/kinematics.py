@@ -1,0 +1,189 @@
+"""What the build hands to the emitters: every program of one mechanism, and what its names mean.
+
+Names that programs share:
+
+    link_length_1, offset_a1, ...   parameters and constants: outputs of `setup`, free in all other programs
+    axis_a1, ref_a1                 axis value and its reference (degrees or user's length unit)
+    turn_a1                         commanded period number (an integer as a real), 0 = open
+    sigma_elbow                     branch sign: +1 is byte 1, -1 is byte 2
+    x, y, z, r11 … r33              frame: position, rotation by rows (columns are the axes of the frame); where a caller gives
+                                    it, `rotation_program` has made it one before: no other program checks it
+    point_x, point_y, point_z       the point off the flange (the tool offset), in flange coordinates
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from derive.description.mechanism import Branch, Joint, Limited, Mechanism, Parameter
+from derive.ir.program import Call, Program, shared
+from derive.kinematics.reference_cases import SelfTest
+
+
+class Freedom(Enum):
+    """The orientations a flange can have (SoftMotion's OrientationDOF)."""
+
+    ZERO = "zero"
+    ONE = "one"
+    THREE = "three"
+
+
+@dataclass(frozen=True)
+class Margin:
+    """A dimensionless distance from a singularity, with the exponent it has in sqrt(det(J^T J))."""
+
+    name: str
+    exponent: int
+    kind: str
+    """"type 1" (serial) or "type 2" (parallel)."""
+    length: str | None = None
+    """Of a machine without a length to compare with: the output that is the distance, in the user's unit. The margin itself
+    is then 1, or 0 where the distance leaves an axis free: a number without a unit, but none that tells how far it is."""
+
+    @property
+    def factor(self) -> str:
+        """The output that is a factor of sqrt(det(J^T J))."""
+        return self.length or self.name
+
+
+@dataclass(frozen=True)
+class Inverted:
+    """What was measured of the inverse and of the Jacobian."""
+
+    round_trip: float
+    jacobian: float
+    solutions: int
+    """Real solutions found by multi-start root finding, agreeing with the slots at every sampled pose."""
+    missed: tuple[int, int] | None = None
+    """Of a search: how many solutions no slot held, of how many in all."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What the independent witness measured, rounded up so that it reads the same on every machine."""
+
+    poses: int
+    closure_residual: float
+    inverted: Inverted | None
+    """None for a mechanism without joints: there is nothing to invert."""
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """All programs of one mechanism.
+
+    setup            parameters (all of `parameters`, flags and signs as numbers) → every constant that the other programs read.
+                     Its conditions are what Initialize refuses; all carry NOT_INITIALIZED.
+                     Among its outputs per axis: `unlimited_a1` (0/1), `lower_a1`, `upper_a1` (effective limits as
+                     GetAxisProperties reports them), and `check_limits` (0/1).
+    setup_less_windows   as setup, less `lowest_a1` `highest_a1` `single_a1` `mid_a1` of the axes: where drives hand over limits
+                     of their own, `parameters.limits_of_axis` gives these; None where no axis has turns to choose from
+    forward          axis_* → x y z r11…r33, and `branch_<name>` per branch: the signed margin, positive = byte 1,
+                     at most 1e-11 in size = byte 3 (the branches coincide)
+    forward_from     axis_*, start_x … start_z, start_r11 … start_r33 → as forward, which is iterative and starts at a home pose;
+                     None where forward kinematics does not iterate
+    orientation      axis_* → r11…r33
+    branch           x y z r11…r33 (those it reads), sigma_*, turn_*, ref_* → axis_*; one branch, periods included, limits not
+    search_given     as branch → what the search of that branch is given; None where there is a closed form
+    from_joints      angles and lengths of the joints, turn_*, ref_* → axis_*; None where no search gives the joints
+    limits           axis_* → nothing; its conditions are the axis limits and the limits of coupled quantities
+    singularity      axis_* → one output per margin, by name; singular where one is below 1e-3 in size; also the length of a
+                     margin that has one
+    jacobian         axis_* → j11, j12, … (row, column from 1): rows are `rows`, columns the axes; per radian
+    image            nothing → zero_r11…zero_r33, rot_x rot_y rot_z (base), u_x u_y u_z (flange): R·u = rot
+    projection       r11…r33 → the same, projected to the nearest rotation the flange can have; None where not chosen
+    offset_branch    x y z of the point, point_*, sigma_*, turn_*, ref_* → axis_*; None where the interface is not offered
+    offset_configuration   axis_*, point_* → `branch_<name>`; None likewise
+    twist            axis_* → j11 … of all six rows, x y z turn x turn y turn z; None where no coupling asks for it, and where
+                     the flange keeps its orientation: then the rows of `jacobian` are all there are
+
+    Of an orientation kinematics, None for any other. The flange that carries it turns about the line flange_axis_* (as the
+    flange sees it) = base_axis_* (as the machine does); both are zero for a flange that turns freely:
+
+    compatible       flange_axis_* → nothing; its conditions are what a flange that turns can carry
+    carried          flange_axis_*, base_axis_*, r11…r33 commanded (those it reads) → x y z from the flange to the end point
+    total_image      r11…r33 one orientation of the flange, flange_axis_*, base_axis_* → the image of both together as `image`
+                     has it, if the flange keeps its orientation or turns about the same axis: `apart`, the sine of the
+                     angle between the two axes, says whether it is the same
+    """
+
+    mechanism: Mechanism
+    parameters: tuple[Parameter, ...]
+    setup: Program
+    forward: Program
+    orientation: Program
+    branch: Program
+    limits: Program
+    singularity: Program
+    jacobian: Program
+    image: Program
+    projection: Program | None
+    offset_branch: Program | None
+    offset_configuration: Program | None
+    rows: tuple[str, ...]
+    """The rows of the Jacobian: "x", "y", "z", "turn z"."""
+    margins: tuple[Margin, ...]
+    freedom: Freedom
+    reads_rotation: bool
+    setup_less_windows: Program | None = None
+    forward_from: Program | None = None
+    search_given: Program | None = None
+    from_joints: Program | None = None
+    twist: Program | None = None
+    compatible: Program | None = None
+    carried: Program | None = None
+    total_image: Program | None = None
+    evidence: Evidence | None = None
+    self_test: SelfTest | None = None
+    """Calls for a test on the controller; None until they are made."""
+
+    @property
+    def shared(self) -> tuple[Program, ...]:
+        """The programs that several of these call: one that is called comes before the one that calls it."""
+        return shared(self.programs)
+
+    @property
+    def branch_calls(self) -> bool:
+        """Whether the inverse calls programs that others share."""
+        return any(isinstance(s, Call) for s in self.branch.body)
+
+    @property
+    def programs(self) -> tuple[Program, ...]:
+        """All programs but `setup`, without those that are shared."""
+        found = (
+            self.forward, self.forward_from, self.orientation, self.branch, self.limits, self.singularity, self.jacobian,
+            self.image, self.projection, self.offset_branch, self.offset_configuration,
+        )  # fmt: skip
+        return tuple(program for program in found if program is not None)
+
+    @property
+    def branches(self) -> tuple[Branch, ...]:
+        """The branches, in the order of their bytes: the first bytes of the configuration."""
+        return self.mechanism.branches
+
+    @property
+    def period_joints(self) -> tuple[Joint, ...]:
+        """The multi-turn axes, in the order of their bytes, which follow the branch bytes."""
+        return self.mechanism.period_joints
+
+    @property
+    def configuration_size(self) -> int:
+        """Bytes of the configuration; 0 where the mechanism has none."""
+        return len(self.branches) + len(self.period_joints)
+
+    @property
+    def chooses_twist(self) -> bool:
+        """Whether the mechanism follows a turn of the commanded rotation and projects the rest."""
+        return self.projection is not None and self.freedom is not Freedom.THREE
+
+    @property
+    def limited(self) -> tuple[Limited, ...]:
+        """Quantities with limits of their own."""
+        return self.mechanism.limited
+
+    @property
+    def distance_joints(self) -> tuple[Joint, ...]:
+        """The axes whose squared differences decide an automatic choice: the rotary ones, or all where there is none."""
+        angles = tuple(j for j in self.mechanism.joints if j.is_angle)
+        return angles or self.mechanism.joints

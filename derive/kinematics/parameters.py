@@ -1,0 +1,299 @@
+"""All inputs of a machine, and the setup program that checks them and computes what depends on them alone.
+
+Where a controller hands over the limits of its drives, `limits_of_axis` narrows those of the machine by them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import sympy as sp
+
+from derive.description.mechanism import Joint, Mechanism, Parameter, Role, rotary
+from derive.ir.constants import (
+    LARGEST,
+    LIMIT,
+    ONE_TURN,
+    TIE_SHARE,
+    UNLIMITED,
+)
+from derive.ir.passes import bare, renamed
+from derive.ir.primitives import (
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Statement,
+    Status,
+    rewritten,
+)
+from derive.ir.symbols import (
+    MIN_TYPE2_MARGIN,
+    SCALE,
+    real,
+)
+from derive.ir.verify import verify
+from derive.plate.plate import machine_constants, machine_statements
+
+CHECK_LIMITS = "check_limits"
+TIE_OF_LENGTHS = real("tie")
+"""What squared distances of linear axes tie within."""
+_LENGTHS = (Role.LENGTH, Role.SIGNED_LENGTH)
+
+
+def machine_parameters(mechanism: Mechanism) -> tuple[Parameter, ...]:
+    """The description's parameters, then offset and limits of every axis and of every limited quantity."""
+    parameters = list(mechanism.parameters)
+    for joint in mechanism.joints:
+        parameters.append(_number(joint, "offset", "axis value at the kinematic zero position", joint.offset_range))
+    for joint in mechanism.joints:
+        for word in ("lower", "upper"):
+            meaning = f"{word} limit of the axis, both 0: {_without_limits(joint)}"
+            parameters.append(_number(joint, word, meaning, joint.limit_range))
+    for quantity in mechanism.limited:
+        unit = "deg" if quantity.is_angle else "u"
+        for word in ("lower", "upper"):
+            meaning = f"{word} limit of {quantity.meaning}, both 0: no limit"
+            parameters.append(_setting(f"{word}_{quantity.name}", meaning, unit, None))
+    parameters += _assembly_parameters(mechanism)
+    check = Parameter(
+        real(CHECK_LIMITS), CHECK_LIMITS, Role.FLAG, "inverse kinematics tests the limits", "", 0.0, 1.0, False, 1.0, 1.0
+    )
+    return (*parameters, check)
+
+
+def _assembly_parameters(mechanism: Mechanism) -> list[Parameter]:
+    """The assembly mode of a closed loop, and how near to losing the plate it may come."""
+    if mechanism.is_platform:
+        return [_least_margin()]
+    if mechanism.assembly is None:
+        return []
+    name, chosen = mechanism.assembly.parameter, mechanism.assembly.names[1]
+    meaning = f"assembly mode: {chosen} instead of {mechanism.assembly.names[0]}"
+    return [
+        Parameter(real(name), name, Role.FLAG, meaning, "", 0.0, 1.0, False, 0.0, 0.0),
+        _least_margin(),
+    ]
+
+
+def _least_margin() -> Parameter:
+    meaning = "least distance from a type 2 singularity, a number without a unit; 0: off"
+    return Parameter(real(MIN_TYPE2_MARGIN), MIN_TYPE2_MARGIN, Role.RATIO, meaning, "1", 0.0, 1.0, False, 1e-3, 1e-3)
+
+
+def _number(joint: Joint, word: str, meaning: str, interval: tuple[float, float] | None) -> Parameter:
+    unit = "deg" if joint.is_angle else "u"
+    return _setting(f"{word}_{joint.key}", f"{joint.name}: {meaning}", unit, interval)
+
+
+def _setting(name: str, meaning: str, unit: str, interval: tuple[float, float] | None) -> Parameter:
+    low, high = interval or (-1e9, 1e9)
+    role = Role.ANGLE if unit == "deg" else Role.DISTANCE
+    return Parameter(real(name), name, role, meaning, unit, low, high, False, 0.0, 0.0)
+
+
+def setup_program(
+    mechanism: Mechanism, parameters: tuple[Parameter, ...], hoisted: tuple[Let, ...], *, has_settings: bool = False
+) -> Program:
+    """Check every parameter; outputs are the parameters themselves, the effective limits, and what was hoisted.
+
+    Where drives have settings, what `limits_of_axis` gives is left to it: nothing here may depend on it.
+    """
+    body: list[Statement] = [condition for p in parameters for condition in _range_of(p)]
+    for constraint in mechanism.constraints:
+        body += constraint.steps
+        body.append(Require(_inequality(constraint.condition), Status.NOT_INITIALIZED, constraint.message))
+    outputs = [Output(p.name, real(p.name)) for p in parameters if not p.name.startswith(("lower_", "upper_"))]
+    for joint in mechanism.joints:
+        body += [_ordered(joint.key), *_limits(joint.key, _fallback(joint))]
+        outputs += _limit_outputs(joint.key)
+        if not has_settings:
+            body += [*_widened(joint.key), *_turn_window(joint)]
+            outputs += _window_outputs(joint.key, has_turns=joint.multi_turn)
+    for quantity in mechanism.limited:
+        body += [_ordered(quantity.name), *_limits(quantity.name, ()), *_widened(quantity.name)]
+        outputs += [*_limit_outputs(quantity.name), *_window_outputs(quantity.name, has_turns=False)]
+    if mechanism.is_platform:
+        body += machine_statements(mechanism)
+        outputs += machine_constants(mechanism)
+    else:
+        body.append(Let(SCALE, machine_scale(parameters), "a length of the machine"))
+        outputs.append(Output(SCALE.name, SCALE))
+    if chooses_by_lengths(mechanism):
+        body.append(Let(TIE_OF_LENGTHS, TIE_SHARE**2 * SCALE**2, "squared distances closer than this are equal"))
+        outputs.append(Output(TIE_OF_LENGTHS.name, TIE_OF_LENGTHS))
+    body += hoisted
+    outputs += [*(Output(let.name.name, let.name) for let in hoisted)]
+    inputs = tuple(real(p.name) for p in parameters)
+    return verify(Program("setup", inputs, bare(body), tuple(outputs)))
+
+
+def chooses_by_lengths(mechanism: Mechanism) -> bool:
+    """Whether linear axes alone tell which branch is nearest to the reference."""
+    return bool(mechanism.branches) and not any(j.is_angle for j in mechanism.joints)
+
+
+def machine_scale(parameters: Sequence[Parameter]) -> sp.Expr:
+    """The sum of the lengths of the description; one user's unit where there is none."""
+    own = [p for p in parameters if p.role in _LENGTHS or (p.role is Role.DISTANCE and p.symbol.is_nonnegative)]
+    return sp.Add(*[sp.Abs(p.symbol) for p in own]) if has_length(parameters) else sp.Integer(1)
+
+
+def has_length(parameters: Iterable[Parameter]) -> bool:
+    """Whether a machine has a length that is never zero: what its other lengths can be compared with."""
+    return any(p.role in _LENGTHS for p in parameters)
+
+
+def _range_of(parameter: Parameter) -> tuple[Require, ...]:
+    symbol, note = parameter.symbol, f"{parameter.name}: {parameter.meaning}"
+    if parameter.role is Role.FLAG:
+        return ()
+    if parameter.role is Role.SIGN:
+        condition = sp.And(sp.Ge(sp.Abs(symbol), 1), sp.Le(sp.Abs(symbol), 1))
+        return (Require(condition, Status.NOT_INITIALIZED, note),)
+    bare = real(parameter.name)  # without assumptions: SymPy must not decide `length > 0` by itself
+    low = sp.Float(parameter.low) if parameter.low % 1 else sp.Integer(int(parameter.low))
+    high = sp.Float(parameter.high) if parameter.high % 1 else sp.Integer(int(parameter.high))
+    if parameter.role is Role.SIGNED_LENGTH:
+        apart = sp.Or(sp.Gt(bare, 0), sp.Lt(bare, 0))  # a comparison takes what is no number, a size does not
+        inside = sp.And(apart, sp.Ge(bare, low), sp.Le(bare, min(high, LARGEST)))
+        return (Require(inside, Status.NOT_INITIALIZED, note),)
+    above = sp.Gt(bare, low) if parameter.low_open else sp.Ge(bare, low)
+    return (Require(sp.And(above, sp.Le(bare, min(high, LARGEST))), Status.NOT_INITIALIZED, note),)
+
+
+def _inequality(condition: sp.Basic) -> sp.Basic:
+    """An equation as a positive comparison, which not-a-number fails."""
+    return sp.Le(sp.Abs(condition.lhs - condition.rhs), 0) if isinstance(condition, sp.Eq) else condition
+
+
+def _ordered(key: str) -> Require:
+    lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
+    condition = sp.Or(sp.Lt(lower, upper), sp.Le(sp.Abs(lower) + sp.Abs(upper), 0))
+    return Require(condition, Status.NOT_INITIALIZED, f"lower_{key} below upper_{key}, or both 0")
+
+
+Fallback = tuple[tuple[sp.Basic, sp.Expr, sp.Expr], ...]
+
+
+def _fallback(joint: Joint) -> Fallback:
+    """(condition, lower, upper) where no limit is given: a carried pitch, or what the closure allows."""
+    found: list[tuple[sp.Basic, sp.Expr, sp.Expr]] = []
+    if joint.pitch != 0 and joint.limit_range is not None:
+        low, high = (sp.Integer(int(v)) for v in joint.limit_range)
+        found.append((sp.Gt(sp.Abs(joint.pitch), 0), low, high))
+    if joint.domain is not None:
+        low, high = (sp.Integer(int(v)) + joint.offset for v in joint.domain)
+        found.append((sp.true, low, high))
+    return tuple(found)
+
+
+def _without_limits(joint: Joint) -> str:
+    """What limits an axis that is given none: see `_fallback`."""
+    if joint.domain is not None:
+        low, high = joint.domain
+        return f"joint value {low:g} .. {high:g}" if high < float(LARGEST) else f"joint value {low:g} or more"
+    if joint.pitch != 0 and joint.limit_range is not None:
+        low, high = joint.limit_range
+        return f"no limit, but {low:g} .. {high:g} while it has a pitch"
+    return "no limit"
+
+
+def _limits(key: str, fallback: Fallback) -> tuple[Let, ...]:
+    lower, upper = real(f"lower_{key}"), real(f"upper_{key}")
+    low, high, unlimited = _effective(key)
+    open_ended = sp.Le(sp.Abs(lower) + sp.Abs(upper), 0)
+    low_value, high_value, free = lower, upper, sp.Integer(1)
+    for condition, bottom, top in fallback:
+        given = sp.Gt(sp.Abs(lower) + sp.Abs(upper), 0)
+        low_value = Select(given, lower, Select(condition, bottom, sp.Integer(0)) if condition != sp.true else bottom)
+        high_value = Select(given, upper, Select(condition, top, sp.Integer(0)) if condition != sp.true else top)
+        free = Select(condition, sp.Integer(0), sp.Integer(1)) if condition != sp.true else sp.Integer(0)
+    return (
+        Let(unlimited, Select(open_ended, free, sp.Integer(0)), f"{key}: no limit"),
+        Let(low, low_value),
+        Let(high, high_value),
+    )
+
+
+def _effective(key: str) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+    """The names of the lower and the upper limit, and of whether there is none."""
+    return real(f"effective_lower_{key}"), real(f"effective_upper_{key}"), real(f"unlimited_{key}")
+
+
+def _widened(key: str) -> tuple[Let, ...]:
+    """The ends that are tested: the limits and their tolerance."""
+    low, high, unlimited = _effective(key)
+    tolerance = real(f"tolerance_{key}")
+    return (
+        Let(tolerance, LIMIT * (1 + sp.Abs(low) + sp.Abs(high))),
+        Let(real(f"lowest_{key}"), Select(sp.Gt(unlimited, 0), -UNLIMITED, low - tolerance)),
+        Let(real(f"highest_{key}"), Select(sp.Gt(unlimited, 0), UNLIMITED, high + tolerance)),
+    )
+
+
+def _limit_outputs(key: str) -> list[Output]:
+    return [
+        Output(f"lower_{key}", real(f"effective_lower_{key}")),
+        Output(f"upper_{key}", real(f"effective_upper_{key}")),
+        Output(f"unlimited_{key}", real(f"unlimited_{key}")),
+    ]
+
+
+def _window_outputs(key: str, *, has_turns: bool) -> list[Output]:
+    words = ("lowest", "highest", "single", "mid") if has_turns else ("lowest", "highest")
+    return [Output(f"{word}_{key}", real(f"{word}_{key}")) for word in words]
+
+
+def _turn_window(joint: Joint) -> tuple[Let, ...]:
+    """Whether the axis has one value inside its limits at most, with a gap that no step crosses; and the middle of its range."""
+    if not joint.multi_turn:
+        return ()
+    low, high, unlimited = (real(f"{w}_{joint.key}") for w in ("effective_lower", "effective_upper", "unlimited"))
+    one_turn = sp.And(sp.Le(unlimited, 0), sp.Le(high - low, ONE_TURN + real(f"tolerance_{joint.key}")))
+    return (
+        Let(real(f"single_{joint.key}"), Select(one_turn, sp.Integer(1), sp.Integer(0)), "one value inside the limits"),
+        Let(real(f"mid_{joint.key}"), (low + high) / 2),
+    )
+
+
+def limits_of_axis() -> Program:
+    """The limits of an axis of the machine and those of its drive together, for any axis.
+
+    own_unlimited own_lower own_upper, drive_limited drive_lower drive_upper → lowest highest single middle: both ends with
+    their tolerance, whether one value is inside for every direction, and the middle. A drive that has not been heard of
+    has no limits: `drive_limited` is 0, and its ends are not looked at.
+    """
+    axis = rotary("axis", "any axis")
+    low, high, unlimited = _effective(axis.key)
+    own_unlimited, own_lower, own_upper = (real(f"own_{word}") for word in ("unlimited", "lower", "upper"))
+    drive_limited, drive_lower, drive_upper = (real(f"drive_{word}") for word in ("limited", "lower", "upper"))
+    own_low, own_high = real("own_low"), real("own_high")
+    has_drive = sp.Gt(drive_limited, 0)
+    note = "the lower limit of the drive is above the upper one, or one of them is no number"
+    body: tuple[Statement, ...] = (
+        Require(sp.Or(sp.Le(drive_limited, 0), sp.Le(drive_lower, drive_upper)), Status.BAD_INPUT, note),
+        Let(own_low, Select(sp.Gt(own_unlimited, 0), -LARGEST, own_lower), "no axis value is larger in size"),
+        Let(own_high, Select(sp.Gt(own_unlimited, 0), LARGEST, own_upper)),
+        Let(low, Select(sp.And(has_drive, sp.Gt(drive_lower, own_low)), drive_lower, own_low), "the narrower of both"),
+        Let(high, Select(sp.And(has_drive, sp.Lt(drive_upper, own_high)), drive_upper, own_high)),
+        Require(sp.Le(low, high), Status.NOT_INITIALIZED, "no axis value is inside both limits"),
+        Let(unlimited, Select(has_drive, sp.Integer(0), own_unlimited)),
+        *_widened(axis.key),
+        *_turn_window(axis),
+    )
+    plain = {real(f"{word}_{axis.key}"): real(name) for word, name in _OF_ANY_AXIS.items()}
+    named = tuple(renamed(rewritten(s, lambda e: e.xreplace(plain)), lambda name: plain.get(name, name)) for s in body)
+    outputs = tuple(Output(name, real(name)) for name in ("lowest", "highest", "single", "middle"))
+    inputs = (own_unlimited, own_lower, own_upper, drive_limited, drive_lower, drive_upper)
+    return verify(Program("limits_of_axis", inputs, named, outputs))
+
+
+_OF_ANY_AXIS = {
+    "effective_lower": "lower_end", "effective_upper": "upper_end", "unlimited": "unlimited", "tolerance": "tolerance",
+    "lowest": "lowest", "highest": "highest", "single": "single", "mid": "middle",
+}  # fmt: skip
+"""What the limits of one axis are called where it has no name."""

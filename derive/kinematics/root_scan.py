@@ -1,0 +1,208 @@
+"""Search: one joint tried around the circle, the others solved at each trial, until what is left of the closure vanishes.
+
+Three programs that share their inputs: `try_joint` says what a trial leaves, with its slope (see `FindRoot`); `finish_root`
+makes of a root the joints, improved by Newton's method on the closure, and tells whether they lie on the wanted branch;
+`find_root` finds the root that is nearest to the reference. How roots are found is in `roots`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, sine
+from derive.description.mechanism import (
+    Mechanism,
+)
+from derive.equations.named_pose import walk
+from derive.ir.constants import (
+    BOUNDARY,
+    IMPROVEMENTS,
+    MET,
+    NEARLY,
+)
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Atan2,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    FindRoot,
+    Iterate,
+    Let,
+    Output,
+    Program,
+    Require,
+    Solve,
+    Statement,
+    Status,
+    rewritten,
+)
+from derive.ir.symbols import (
+    COORDINATE_NAMES,
+    FREED,
+    FREED_ANGLE,
+    ROTATION_ENTRIES,
+    SCALE,
+    TRIED,
+    real,
+)
+from derive.kinematics.differential import jacobian_entries
+from derive.kinematics.trial_slopes import slope_name, with_slopes
+
+START = real("start")
+LOOKED_FOR = real("looked_for")
+GOAL = {real(c): real(f"goal_{c}") for c in COORDINATE_NAMES} | {r: real(f"goal_{r.name}") for r in ROTATION_ENTRIES}
+"""The commanded pose, by the names that these programs give it."""
+FITS = "fits"
+FOUND = real("found")
+"""Whether there is a root that fits."""
+_YES, _NO, _HALF = sp.Integer(1), sp.Integer(0), sp.Rational(1, 2)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One trial: statements that solve the other joints at `TRIED`, and what they leave."""
+
+    statements: tuple[Let, ...]
+    value: sp.Expr
+    """What must vanish, a number without a unit."""
+    guard: sp.Expr
+    """Below zero where there is no solution."""
+    angles: tuple[sp.Symbol, ...]
+    """What the partial steps determine."""
+
+
+def try_program(trial: Trial) -> Program:
+    """What a trial says."""
+    value, guard = real("value"), real("guard")
+    left = Let(value, trial.value, "what is left of the closure")
+    differentiated = with_slopes([*_roots_named(trial.statements), left, Let(guard, trial.guard)], TRIED)
+    bound = {s.name for s in differentiated if isinstance(s, Let)}
+    slopes = [slope_name(n) if slope_name(n) in bound else _NO for n in (value, guard)]
+    outputs = [Output("remainder", value), Output("slope", slopes[0]), Output("room", guard), Output("room_slope", slopes[1])]
+    for number, angle in enumerate(trial.angles, 1):
+        outputs += [Output(f"direction_{number}_cos", cosine(angle)), Output(f"direction_{number}_sin", sine(angle))]
+    program = assemble("try_joint", differentiated, outputs)
+    return replace(program, summary="What a trial leaves of the closure, its slope, and what may turn fast with the joint")
+
+
+def find_program(mechanism: Mechanism, trial: Program, finish: Program, arguments: Sequence[sp.Symbol]) -> Program:
+    """The root that fits and is nearest to the start."""
+    names = (FOUND, *(real(o.name) for o in finish.outputs[1:]))
+    note = f"the search along {mechanism.search.joint.name if mechanism.search else ''}"
+    found = FindRoot(trial, finish, START, sp.Gt(LOOKED_FOR, _HALF), names, tuple(arguments), note)
+    program = assemble("find_root", (found,), [Output(n.name, n) for n in names])
+    return replace(program, summary="The joints at the root that is nearest to the start; zeros where none is looked for")
+
+
+def finish_program(mechanism: Mechanism, trial: Trial, wanted: Sequence[sp.Expr], determinant: sp.Symbol) -> Program:
+    """The joints at a root, improved, and whether what is `wanted` of them is not negative."""
+    joints = [j.symbol for j in mechanism.joints]
+    pairs = zip(joints, (real(f"{j.name}_tried") for j in joints), strict=True)
+    solved = {j: Atan2(real(f"{sine(j).name}_tried"), real(f"{cosine(j).name}_tried")) for j, _ in pairs}
+    error = real("error")
+    conditions = [sp.Le(error, MET), *(sp.Ge(w, -NEARLY) for w in wanted)]
+    loop = _newton(mechanism, [solved[j] for j in joints], determinant)
+    fits = Let(real(FITS), Select(sp.And(*conditions), _YES, _NO))
+    outputs = [Output(FITS, fits.name), *(Output(f"found_{j.name}", j) for j in joints)]
+    program = assemble("finish_root", (*trial.statements, loop, fits), outputs)
+    return replace(program, summary="The joints at a root, improved by Newton's method, and whether they are wanted")
+
+
+def _newton(mechanism: Mechanism, start: Sequence[sp.Expr], determinant: sp.Symbol) -> Iterate:
+    """Newton's method on the closure: a step is taken where the next error, its square, will be smaller than this one."""
+    joints = [j.symbol for j in mechanism.joints]
+    walked, (lets, entries) = walk(mechanism), jacobian_entries(mechanism)
+    places = len(mechanism.task.position)
+    pose = [Let(n, v) for n, v in zip(GOAL, (*walked.position, *walked.rotation), strict=True)]
+    scaled = tuple(v / (SCALE if k // len(joints) < places else 1) for k, v in enumerate(entries))
+    errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(), 1)]
+    names = [let.name for let in errors]
+    steps = tuple(real(f"step_{j.name}") for j in joints)
+    error, size, passes = real("error"), real("size"), real("passes")
+    taken = real("taken")
+    return Iterate(
+        state=(*joints, passes),
+        start=(*start, _NO),
+        step=tuple(
+            s
+            for s in (
+                *walked.statements,
+                *pose,
+                *errors,
+                Let(error, Root(sp.Add(*[n**2 for n in names])), "of the pose, in lengths of the machine and radians"),
+                *lets,
+                Solve(steps, scaled, tuple(names), determinant, "the step that lets the error vanish"),
+                Let(size, sp.Add(*[s**2 for s in steps])),
+                Let(taken, Select(sp.Le(size, error), _YES, _NO), "whether the error becomes smaller"),
+            )
+            if isinstance(s, Let | Solve)
+        ),
+        following=(*(j + taken * s for j, s in zip(joints, steps, strict=True)), passes + 1),
+        done=sp.Or(sp.Le(error, BOUNDARY / 100), sp.Gt(passes, IMPROVEMENTS - _HALF), sp.Lt(taken, _HALF)),
+        limit=IMPROVEMENTS + 1,
+        otherwise=Status.UNREACHABLE,
+        note="Newton's method on the closure",
+    )
+
+
+def _errors() -> list[sp.Expr]:
+    """How far the goal is away: a shift in lengths of the machine, and half the skew part of the turn to it."""
+    places = [(GOAL[real(c)] - real(c)) / SCALE for c in COORDINATE_NAMES]
+    here = sp.Matrix(3, 3, ROTATION_ENTRIES)
+    turn = sp.Matrix(3, 3, [GOAL[r] for r in ROTATION_ENTRIES]) * here.T
+    return [*places, *((turn[i, j] - turn[j, i]) / 2 for i, j in ((2, 1), (0, 2), (1, 0)))]
+
+
+def _without_unit(condition: sp.Basic) -> sp.Expr:
+    """How much more than its bound a radicand is, over what its bound is `BOUNDARY` of: a number, whatever the unit of length."""
+    radicand, bound = condition.args
+    return radicand / (-bound / BOUNDARY).as_coeff_Mul()[1] + BOUNDARY
+
+
+def trial_of(
+    statements: Sequence[Statement], value: sp.Expr, angles: Sequence[tuple[sp.Symbol, sp.Symbol]]
+) -> Trial:
+    """A trial of solved statements; `angles` are those of partial steps, each with what is taken where it is free."""
+    guards = [s.condition for s in statements if isinstance(s, Require)]
+    guard = _without_unit(guards[0]) if guards else sp.Integer(1)
+    found: list[Let] = []
+    choices: dict[sp.Expr, sp.Expr] = {}
+    conditions: dict[sp.Expr, sp.Basic] = {}
+    for number, (angle, free) in enumerate(angles):
+        chosen = real(f"chosen_{angle.name}")
+        is_freed = sp.And(sp.Gt(FREED, number - _HALF), sp.Lt(FREED, number + _HALF))
+        found.append(Let(chosen, Select(is_freed, FREED_ANGLE, free), f"{angle.name}, where it is free"))
+        for function in (sp.cos, sp.sin):
+            choices[function(free)] = function(chosen)
+            conditions[function(free)] = sp.Or(sp.Lt(FREED, number - _HALF), sp.Gt(FREED, number + _HALF))
+    for s in statements:
+        if isinstance(s, Let):
+            found.append(replace(s, value=_freed(s.value, choices, conditions)))
+    return Trial(tuple(found), value, guard, tuple(a for a, _ in angles))
+
+
+def _freed(value: sp.Expr, choices: dict[sp.Expr, sp.Expr], conditions: dict[sp.Expr, sp.Basic]) -> sp.Expr:
+    if isinstance(value, Select) and value.args[2] in choices:
+        return Select(sp.And(value.args[0], conditions[value.args[2]]), value.args[1], choices[value.args[2]])
+    return value
+
+
+def _roots_named(statements: Sequence[Let]) -> list[Let]:
+    """The statements with every root under a name, so that it is taken once and its slope as well."""
+    found: list[Let] = []
+    for s in statements:
+        inner = sorted((r for r in s.value.atoms(Root) if r != s.value), key=sp.default_sort_key)
+        names = {r: real(f"root_{f'{number}_' if number else ''}of_{s.name.name}") for number, r in enumerate(inner)}
+        found += [Let(name, root) for root, name in names.items()]
+        found.append(replace(s, value=s.value.xreplace(names)))
+    return found
+
+
+def with_goal(statements: Sequence[Statement]) -> tuple[Statement, ...]:
+    """The statements reading the commanded pose by its names here."""
+    return tuple(rewritten(s, lambda e: e.xreplace(dict(GOAL))) for s in statements)

@@ -1,0 +1,46 @@
+"""Deterministic samples of machines and axis values, for the build's own numerical decisions."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.description.mechanism import Mechanism, Role
+from derive.ir.interpret import evaluate
+from derive.ir.symbols import (
+    SCALE,
+)
+from derive.kinematics.parameters import (
+    machine_parameters,
+    machine_scale,
+)
+
+Samples = dict[str, NDArray[np.float64]]
+
+
+def sample_machine(mechanism: Mechanism, seed: int, optional_zero: bool = False) -> Samples:
+    """Parameters near their nominal values, every name that a program may read, as scalars."""
+    generator = np.random.default_rng(seed)
+    values: Samples = {}
+    parameters = machine_parameters(mechanism)
+    for parameter in parameters:
+        spread = generator.uniform(0.8, 1.2)
+        value = parameter.nominal if parameter.role in (Role.FLAG, Role.SIGN) else parameter.nominal * spread
+        if optional_zero and parameter.role is Role.DISTANCE:
+            value = 0.0
+        values[parameter.name] = np.asarray(value)
+    values[SCALE.name] = np.asarray(evaluate(machine_scale(parameters), values), dtype=float)
+    return values
+
+
+def sample_axes(mechanism: Mechanism, machine: Samples, count: int, seed: int) -> Samples:
+    """Axis values all over the joints' ranges, as arrays; references equal the axes."""
+    generator = np.random.default_rng(seed)
+    values: Samples = {}
+    for joint in mechanism.joints:
+        low, high = joint.domain or ((-180.0, 180.0) if joint.is_angle else (-1.0, 1.0))
+        reach = 1.0 if joint.is_angle else float(machine[SCALE.name])
+        high = min(high, 1e3 if joint.is_angle else 2.0)
+        drawn = generator.uniform(low, high, count) * reach + float(machine[joint.offset.name])
+        values[joint.axis.name] = values[joint.reference.name] = drawn
+    return values

@@ -1,0 +1,1 @@
+"""Programs rewritten for speed and size, for every language."""

@@ -1,0 +1,97 @@
+"""Reused names: in a straight line for all branches, what no later statement reads gives its name to the next branch.
+
+    cos_q1_front = …; axis_a1_front = f(cos_q1_front)         cos_q1 = …; axis_a1_front = f(cos_q1)
+    cos_q1_back = …;  axis_a1_back = f(cos_q1_back)      →    cos_q1 = …; axis_a1_back = f(cos_q1)
+
+It reads like one branch after the other, and holds fewer numbers at a time: a language reuses the memory of those that it drops.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+import sympy as sp
+
+from derive.ir.passes import renamed
+from derive.ir.program import (
+    binds,
+    expressions,
+    reads,
+    rewritten,
+)
+from derive.ir.symbols import (
+    real,
+    symbols_of,
+)
+from derive.optimize.control_flow import Arms, Item
+from derive.optimize.unroll import Sign, without_words
+
+
+def reused_names(
+    items: Sequence[Item], wanted: Sequence[sp.Basic], signs: Sequence[Sign]
+) -> tuple[tuple[Item, ...], Mapping[sp.Symbol, sp.Symbol]]:
+    """The statements with shorter names, and what every name that is wanted behind them is called now."""
+    lives = _lives(items, wanted)
+    fixed = {s.name for item in items for s in _read(item)} - {name.name for name in lives}
+    by_stem: dict[str, list[sp.Symbol]] = {}
+    for name in lives:
+        by_stem.setdefault(without_words(name.name, signs)[0], []).append(name)
+    names: dict[sp.Symbol, sp.Symbol] = {}
+    for variants in by_stem.values():
+        names |= _shortest(variants, signs, lives, fixed | {name.name for name in names.values()})
+    return tuple(_renamed(item, names) for item in items), names
+
+
+def _lives(items: Sequence[Item], wanted: Sequence[sp.Basic]) -> dict[sp.Symbol, tuple[int, int]]:
+    """Of every name that is bound: the places of the first statement and of the last that it is in."""
+    last = {s: place for place, item in enumerate(items) for s in _read(item)}
+    last |= {s: len(items) for value in wanted for s in symbols_of(value)}
+    first = {name: place for place, item in reversed(list(enumerate(items))) for name in _bound(item)}
+    return {name: (place, max(place, last.get(name, place))) for name, place in sorted(first.items(), key=lambda e: e[1])}
+
+
+def _shortest(
+    variants: Sequence[sp.Symbol], signs: Sequence[Sign], lives: Mapping[sp.Symbol, tuple[int, int]], taken: set[str]
+) -> dict[sp.Symbol, sp.Symbol]:
+    """The variants of a name with as few words as tell those apart that are needed at a time: the first words go first."""
+    others = taken | {name.name for name in lives if name not in variants}
+    for kept in range(len(signs) + 1):
+        names = {v: _with_last_words(v, signs, kept) for v in variants}
+        apart = all(
+            lives[a][1] < lives[b][0] or lives[b][1] < lives[a][0]
+            for a, b in combinations(variants, 2) if names[a] == names[b]
+        )  # fmt: skip
+        if apart and not {n.name for n in names.values()} & others:
+            return names
+    return {v: v for v in variants}
+
+
+def _with_last_words(name: sp.Symbol, signs: Sequence[Sign], kept: int) -> sp.Symbol:
+    stem, found = without_words(name.name, signs)
+    return real("_".join([stem, *found[max(0, len(found) - kept) :]]))
+
+
+def _bound(item: Item) -> Iterator[sp.Symbol]:
+    """The names that a statement binds, wherever in it."""
+    if isinstance(item, Arms):
+        for inner in (*item.holds, *item.fails):
+            yield from _bound(inner)
+    else:
+        yield from binds(item)
+
+
+def _read(item: Item) -> set[sp.Symbol]:
+    if isinstance(item, Arms):
+        return symbols_of(item.condition).union(*map(_read, (*item.holds, *item.fails)))
+    return {s for e in expressions(item) for s in symbols_of(e)} | reads(item)
+
+
+def _renamed(item: Item, names: Mapping[sp.Symbol, sp.Symbol]) -> Item:
+    if isinstance(item, Arms):
+        sides = {side: tuple(_renamed(i, names) for i in getattr(item, side)) for side in ("holds", "fails")}
+        called = tuple(names.get(n, n) for n in item.names)
+        return replace(item, condition=item.condition.xreplace(dict(names)), names=called, **sides)
+    changed = rewritten(item, lambda e: e.xreplace(dict(names)))
+    return renamed(changed, lambda n: names.get(n, n))

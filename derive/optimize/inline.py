@@ -1,0 +1,122 @@
+"""Read once: what is read once, and is short, is written where it is read.
+
+    y = a * s                                     angle = atan2(a * s, b + a * c) - atan2(u, v)
+    x = b + a * c
+    angle_of_x = atan2(y, x)                 →
+    angle_of_v = atan2(u, v)
+    angle = angle_of_x - angle_of_v
+
+It serves a language in which a name costs time. A choice reads on one of its sides, so that what is read once on each is
+written on each. Products are not regrouped; terms of a sum may be added in another order. What has a note keeps its name, and
+so does a choice.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.ir.primitives import (
+    NearestPeriod,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    expressions,
+    rewritten,
+)
+from derive.optimize.control_flow import Arms, Item
+
+LONGEST = 5
+"""A value that reads more names than this keeps its own."""
+
+
+class Grouped(sp.Function):
+    """What stands where a name was: a value that is computed by itself."""
+
+    nargs = 1
+    is_real = True
+
+
+def written_where_read(
+    items: Sequence[Item], wanted: Sequence[sp.Basic]
+) -> tuple[tuple[Item, ...], Mapping[sp.Basic, sp.Basic]]:
+    """The statements without such names, and what stands for them in what is wanted."""
+    on_a_path, everywhere, bound = _read(items), Counter[sp.Basic](), Counter(_bound(items))
+    for value in wanted:
+        on_a_path += _written(value)
+    for value in (*wanted, *_values(items)):
+        everywhere += _written(value)
+    once = {n for n in bound if bound[n] == 1 and on_a_path[n] == 1 and everywhere[n] <= 2}
+    values: dict[sp.Basic, sp.Basic] = {}
+    return _shortened(items, once, values), values
+
+
+def _shortened(items: Sequence[Item], once: set[sp.Symbol], values: dict[sp.Basic, sp.Basic]) -> tuple[Item, ...]:
+    kept: list[Item] = []
+    for item in items:
+        if isinstance(item, Arms):
+            condition = item.condition.xreplace(values)
+            holds, fails = (_shortened(side, once - set(item.names), values) for side in (item.holds, item.fails))
+            kept.append(replace(item, condition=condition, holds=holds, fails=fails))
+            continue
+        changed = rewritten(item, lambda e: e.xreplace(values))
+        if isinstance(changed, Let) and changed.name in once and not changed.note and _is_short(changed.value):
+            values[changed.name] = Grouped(changed.value)
+        else:
+            kept.append(changed)
+    return tuple(kept)
+
+
+def _is_short(value: sp.Expr) -> bool:
+    return not value.has(Select, NearestPeriod, Root) and sum(_written(value).values()) <= LONGEST
+
+
+def _read(items: Sequence[Item]) -> Counter[sp.Basic]:
+    """How often names are written on the way through a program on which they are most."""
+    found = Counter[sp.Basic]()
+    for item in items:
+        if isinstance(item, Arms):
+            found += _written(item.condition) + _written(item.condition) + (_read(item.holds) | _read(item.fails))
+        else:
+            for value in expressions(item):
+                found += _written(value)
+    return found
+
+
+def _values(items: Sequence[Item]) -> Iterator[sp.Basic]:
+    """All expressions."""
+    for item in items:
+        if isinstance(item, Arms):
+            yield item.condition
+            yield from _values((*item.holds, *item.fails))
+        else:
+            yield from expressions(item)
+
+
+def _bound(items: Sequence[Item]) -> Iterator[sp.Symbol]:
+    """The names that are bound, as often as they are."""
+    for item in items:
+        if isinstance(item, Arms):
+            yield from _bound((*item.holds, *item.fails))
+        elif isinstance(item, Let):
+            yield item.name
+
+
+def _written(value: sp.Basic) -> Counter[sp.Basic]:
+    """How often names are written in a value: a power is a product, and a condition, a root or a turn may ask twice."""
+    if value.is_Symbol:
+        return Counter({value: 1})
+    found = Counter[sp.Basic]()
+    for part in value.args:
+        found += _written(part)
+    times = abs(int(value.exp)) if isinstance(value, sp.Pow) else 2 if _asks_twice(value) else 1
+    return Counter({name: times * count for name, count in found.items()})
+
+
+def _asks_twice(value: sp.Basic) -> bool:
+    return isinstance(value, Root | NearestPeriod) or not isinstance(value, sp.Expr)

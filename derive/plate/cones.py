@@ -1,0 +1,74 @@
+"""The cones of a rod's joints: how far a rod may lean from its direction at the home pose.
+
+The joint on the base sees the rod's direction u, the joint on the plate R^T u. Each leans by the angle between that and the
+same at the home pose, u0 and R0^T u0, which are the axes of the two cones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import sympy as sp
+
+from derive.description.mechanism import (
+    Mechanism,
+    Rod,
+)
+from derive.ir.constants import (
+    BOUNDARY,
+)
+from derive.ir.primitives import (
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    ROTATION_ENTRIES,
+    real,
+)
+from derive.plate.legs import names, of, turned
+
+_HOME, _SEEN, _TURNED = "home_along", "plate_axis", "cone_axis"
+"""The rod's direction at home, the same as the plate sees it, and where the plate has taken that."""
+
+
+def cone_axes(mechanism: Mechanism, home_rotation: Sequence[sp.Expr]) -> tuple[Let, ...]:
+    """The axes of the cones on the plate, in its frame. Those on the base are the directions at the home pose."""
+    back = sp.Matrix(3, 3, list(home_rotation)).T
+    rods = (rod for rod in mechanism.rods if rod.plate_cone is not None)
+    return tuple(let for rod in rods for let in turned(back, names("along", rod), names(_SEEN, rod)))
+
+
+def cone_constants(mechanism: Mechanism) -> Iterator[Output]:
+    """The axes of all cones, as the other programs know them."""
+    for rod in mechanism.rods:
+        for cone, axis, source in ((rod.base_cone, _HOME, "along"), (rod.plate_cone, _SEEN, _SEEN)):
+            if cone is not None:
+                yield from (Output(n.name, s) for n, s in zip(names(axis, rod), names(source, rod), strict=True))
+
+
+def cone_checks(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """What the directions of the rods must satisfy at a solved pose."""
+    on_base = [(rod, rod.base_cone) for rod in mechanism.rods if rod.base_cone is not None]
+    on_plate = [(rod, rod.plate_cone) for rod in mechanism.rods if rod.plate_cone is not None]
+    taken = (let for rod, _ in on_plate for let in turned(ROTATION_ENTRIES, names(_SEEN, rod), names(_TURNED, rod)))
+    return (*_inside("base", on_base, _HOME), *taken, *_inside("plate", on_plate, _TURNED))
+
+
+def _inside(side: str, cones: Sequence[tuple[Rod, sp.Expr]], axis: str) -> Iterator[Statement]:
+    """Every rod inside its cone, whose boundary belongs to it; one of 180 degrees bounds nothing."""
+    widths = list(dict.fromkeys(cone for _, cone in cones))
+    least = {cone: real(f"least_cos_{side}" + (f"_{k}" if len(widths) > 1 else "")) for k, cone in enumerate(widths, 1)}
+    for cone, name in least.items():
+        narrow = sp.Gt(sp.cos(cone), BOUNDARY - 1)
+        yield Let(name, Select(narrow, sp.cos(cone) - BOUNDARY, sp.Integer(-2)), f"least cosine of a leg's lean on the {side}")
+    for rod, cone in cones:
+        lean = of(f"cos_{side}_lean", rod)
+        yield Let(lean, sp.Add(*[a * b for a, b in zip(names("along", rod), names(axis, rod), strict=True)]))
+        note = f"leg {rod.name}: its joint on the {side} bends beyond its cone"
+        yield Require(sp.Ge(lean, least[cone]), Status.UNREACHABLE, note)

@@ -1,0 +1,161 @@
+"""A platform on rods that moves with its whole pose: its home pose, what the inverse refuses, and its singularity.
+
+det A (see `legs`) is the margin: it is zero where the rods lie in one linear complex (type 2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+
+from derive.description.mechanism import (
+    DescriptionError,
+    Mechanism,
+    Rod,
+)
+from derive.ir.constants import (
+    FREE_ANGLE,
+    SHORTEST_LINK,
+    SINGULAR,
+)
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Output,
+    Program,
+    Require,
+    Solve,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    ASSEMBLY_SIGN,
+    COORDINATE_NAMES,
+    DETERMINANT,
+    HOME_ROTATION,
+    MIN_TYPE2_MARGIN,
+    POSITION,
+    ROTATION_ENTRIES,
+    SCALE,
+    real,
+)
+from derive.plate.cones import cone_axes, cone_checks, cone_constants
+from derive.plate.legs import (
+    ANGLES,
+    MARGIN,
+    RADIUS,
+    by_angles,
+    length,
+    names,
+    of,
+    point_of,
+    row,
+    rows,
+    span,
+    turned,
+)
+
+
+def machine_statements(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """What depends on the machine alone: home rotation and arms, scales, and the assembly mode at the home pose."""
+    if len(mechanism.rods) != 6 or len(mechanism.home) != 6:
+        raise DescriptionError("a platform that moves freely needs six rods and a home pose of six coordinates")
+    turns = tuple(zip(ANGLES, mechanism.home[3:], strict=True))
+    trigonometric = (Let(real(f"{w}_home_{n}"), f(v)) for n, v in turns for w, f in (("cos", sp.cos), ("sin", sp.sin)))
+    rotation = by_angles([f"home_{n}" for n in ANGLES])
+    return (
+        *trigonometric,
+        *(Let(n, v) for n, v in zip(HOME_ROTATION, rotation, strict=True)),
+        *(let for rod in mechanism.rods for let in turned(HOME_ROTATION, point_of(rod), names("home_arm", rod))),
+        *_platform_radius(mechanism),
+        *_at_home(mechanism),
+    )
+
+
+def _platform_radius(mechanism: Mechanism) -> tuple[Let, ...]:
+    points = [point_of(rod) for rod in mechanism.rods]
+    centre = tuple(real(f"centre_{c}") for c in COORDINATE_NAMES)
+    means = (sp.Add(*column) / len(points) for column in zip(*points, strict=True))
+    squares = [(c - m) ** 2 for point in points for c, m in zip(point, centre, strict=True)]
+    spread = real("spread")
+    return (
+        *(Let(n, v, "centre of the joints on the platform") for n, v in zip(centre, means, strict=True)),
+        Let(spread, Root(sp.Add(*squares) / len(points)), "their mean distance from it"),
+        Let(RADIUS, Select(sp.Gt(spread, 0), spread, sp.Integer(1))),
+    )
+
+
+def _at_home(mechanism: Mechanism) -> tuple[Statement, ...]:
+    """The legs at the home pose, which must hold the platform."""
+    rods, arms = mechanism.rods, [names("home_arm", rod) for rod in mechanism.rods]
+    lengths = tuple(of("length", rod) for rod in rods)
+    shortest = SHORTEST_LINK * SCALE
+    apart = sp.And(sp.Gt(real("spread"), shortest), *[sp.Gt(v, shortest) for v in lengths])
+    spans = (span(rod, mechanism.home[:3], arm, rod.base) for rod, arm in zip(rods, arms, strict=True))
+    return (
+        *(let for lets in spans for let in lets),
+        *(length(rod) for rod in rods),
+        Let(SCALE, sp.Add(*lengths) / len(lengths) + RADIUS, "a length of the machine: the mean leg and the platform"),
+        Require(apart, Status.NOT_INITIALIZED, "legs that have a length at the home pose, and joints that are apart"),
+        *(let for rod, arm in zip(rods, arms, strict=True) for let in row(rod, arm, of("length", rod))),
+        *cone_axes(mechanism, HOME_ROTATION),
+        Solve((), rows(mechanism), (), DETERMINANT, "the legs at the home pose: zero where they do not hold the platform"),
+        Require(sp.Gt(sp.Abs(DETERMINANT), SINGULAR), Status.NOT_INITIALIZED, "a home pose at which the legs hold the platform"),
+        Let(ASSEMBLY_SIGN, Select(sp.Gt(DETERMINANT, 0), sp.Integer(1), sp.Integer(-1)), "assembly mode of this machine"),
+    )
+
+
+def machine_constants(mechanism: Mechanism) -> tuple[Output, ...]:
+    """Those of these names that other programs may read."""
+    own = (Output(n.name, n) for n in (*HOME_ROTATION, RADIUS, SCALE, ASSEMBLY_SIGN))
+    return (*own, *cone_constants(mechanism))
+
+
+def platform_checks(mechanism: Mechanism, solved: Sequence[Statement]) -> tuple[Statement, ...]:
+    """What a solved inverse must satisfy: legs with a length, in the machine's assembly mode, and far from losing the plate."""
+    bound = {s.name for s in solved if isinstance(s, Let)}
+    lets: list[Let] = []
+    for rod in mechanism.rods:
+        arm = names("arm", rod)
+        found = (*turned(ROTATION_ENTRIES, point_of(rod), arm), *span(rod, POSITION, arm, rod.base), *row(rod, arm, rod.length))
+        lets += [let for let in found if let.name not in bound]
+    margin = sp.Ge(ASSEMBLY_SIGN * DETERMINANT, real(MIN_TYPE2_MARGIN))
+    return (
+        *lets,
+        *(_long_enough(rod) for rod in mechanism.rods),
+        *cone_checks(mechanism),
+        Solve((), rows(mechanism), (), DETERMINANT, "margin of the platform"),
+        Require(margin, Status.UNREACHABLE, f"{MARGIN}: the other assembly mode, or too near to losing the plate"),
+    )
+
+
+def _long_enough(rod: Rod) -> Require:
+    note = f"leg {rod.name}: without length it has no direction"
+    return Require(sp.Gt(rod.length, SHORTEST_LINK * SCALE), Status.UNREACHABLE, note)
+
+
+def platform_jacobian(mechanism: Mechanism, motors: sp.Matrix) -> tuple[tuple[Statement, ...], list[sp.Expr]]:
+    """A^-1 (-B) at a pose that forward kinematics has found: how joints move the plate."""
+    joints = [j.symbol for j in mechanism.joints]
+    driven = sp.Matrix([_driven(rod).jacobian(joints) for rod in mechanism.rods]) * motors
+    width = len(joints)
+    words = (*(f"v{c}" for c in COORDINATE_NAMES), *(f"w{c}" for c in COORDINATE_NAMES))
+    entries = [real(f"column_{column}_{word}") for word in words for column in range(1, width + 1)]
+    held = Require(sp.Gt(sp.Abs(DETERMINANT), FREE_ANGLE), Status.IMPOSSIBLE, "nothing controls the plate")
+    system = Solve(tuple(entries), rows(mechanism), tuple(driven), None, "how the legs move the platform")
+    return (held, system), [e if k // width < 3 else e / RADIUS for k, e in enumerate(entries)]
+
+
+def _driven(rod: Rod) -> sp.Matrix:
+    """Minus the residual of a rod as far as joints move it, its direction held: along . base + length."""
+    return sp.Matrix([sum((a * b for a, b in zip(names("along", rod), rod.base, strict=True)), rod.length)])
+
+
+def platform_singularity(statements: Sequence[Statement]) -> Program:
+    """The margin at a pose that forward kinematics has found."""
+    return assemble("singularity", statements, [Output(MARGIN, DETERMINANT)])

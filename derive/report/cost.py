@@ -1,0 +1,195 @@
+"""What a program costs: the arithmetic of one call at worst, counted in the statements that every language prints.
+
+A subtraction is an addition, a change of sign and a comparison are free, a power is so many multiplications. Both values of
+a choice count, all passes of an iteration, and what `Initialize` computed once counts nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import astuple, dataclass
+
+import sympy as sp
+
+from derive.equations.rotation_repair import rotation_program
+from derive.ir.constants import (
+    FINISHED,
+    TRIALS,
+)
+from derive.ir.primitives import (
+    Atan2,
+    NearestOnArc,
+    NearestPeriod,
+    Root,
+)
+from derive.ir.program import (
+    Call,
+    FindRoot,
+    Iterate,
+    Let,
+    Program,
+    Require,
+    Solve,
+    Statement,
+)
+from derive.kinematics.kinematics import Kinematics
+from derive.report.reasons import Reasons, reasons_of, reasons_of_rotation
+
+_BINARY_FRACTIONS = (2, 4, 8, 16)
+"""The denominators that are written as a decimal factor."""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """How many operations of every kind."""
+
+    additions: int = 0
+    multiplications: int = 0
+    divisions: int = 0
+    roots: int = 0
+    trigonometric: int = 0
+    """Sines, cosines and arc tangents."""
+
+    def __add__(self, other: Cost) -> Cost:
+        return Cost(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
+
+    def __mul__(self, times: int) -> Cost:
+        return Cost(*(times * a for a in astuple(self)))
+
+
+@dataclass(frozen=True)
+class Bound:
+    """An iteration: the program it is in, what it does, and how many passes it has at most."""
+
+    program: str
+    note: str
+    limit: int
+
+
+@dataclass(frozen=True)
+class Costs:
+    """What the calls of a block cost at worst."""
+
+    forward: Cost
+    inverse: Cost
+    """With a configuration that names every branch."""
+    automatic: Cost
+    """With a configuration that leaves every branch open: the same where there is none."""
+    bounds: tuple[Bound, ...]
+
+
+_PRIMITIVES: dict[type[sp.Basic], Cost] = {
+    sp.sin: Cost(trigonometric=1),
+    sp.cos: Cost(trigonometric=1),
+    Root: Cost(roots=1),
+    Atan2: Cost(additions=1, divisions=1, trigonometric=1),
+    NearestPeriod: Cost(additions=5, multiplications=1, divisions=1),
+    NearestOnArc: Cost(additions=5, multiplications=3, divisions=1),
+}
+"""As the functions of Structured Text do it, where they have to."""
+_PERIOD_BYTE = Cost(additions=4, divisions=1)
+"""The number of the turn in which an axis value lies."""
+
+
+def costs_of(kinematics: Kinematics) -> Costs:
+    """What forward and inverse kinematics of a mechanism cost at worst."""
+    periods, axes = len(kinematics.period_joints), len(kinematics.distance_joints)
+    reasons = reasons_of(kinematics)
+    branch, limits = (_with_refusals(p, reasons) for p in (kinematics.branch, kinematics.limits))
+    # The distance of a solution from the reference, a sum of squares, and its comparison with the least so far
+    tried = branch + Cost(additions=3 * axes, multiplications=axes) if kinematics.branches else branch
+    once = _with_refusals(rotation_program(), reasons_of_rotation()) + limits if kinematics.reads_rotation else limits
+    return Costs(
+        forward=cost_of(kinematics.forward) + _PERIOD_BYTE * periods,
+        inverse=tried + once,
+        automatic=tried * 2 ** len(kinematics.branches) + once,
+        bounds=tuple(dict.fromkeys(b for p in (kinematics.forward, kinematics.branch) for b in _bounds(p))),
+    )
+
+
+def _with_refusals(program: Program, reasons: Reasons) -> Cost:
+    """The same where a refusal also computes how much is missing: nothing that follows is then computed."""
+    worst, before = cost_of(program), Cost()
+    for statement in program.body:
+        before += _statement(statement)
+        if isinstance(statement, Require):
+            worst = _most(worst, *(before + expression_cost(c.missing) for c in reasons.checks([statement])))
+    return worst
+
+
+def _most(*costs: Cost) -> Cost:
+    return Cost(*map(max, zip(*map(astuple, costs), strict=True)))
+
+
+def cost_of(program: Program) -> Cost:
+    """What one run of a program costs at worst."""
+    return _total(map(_statement, program.body)) + _total(map(expression_cost, (o.value for o in program.outputs)))
+
+
+def expression_cost(node: sp.Basic) -> Cost:
+    """What an expression costs, as every language writes it."""
+    if isinstance(node, sp.Mul | sp.Pow):
+        return _product(node)
+    own = _PRIMITIVES.get(type(node), Cost())
+    if isinstance(node, sp.Add):
+        own = Cost(additions=len(node.args) - 1)
+    return own + _total(map(expression_cost, node.args))
+
+
+def solve_cost(size: int, columns: int) -> Cost:
+    """What linear equations cost: elimination with its pivots, the determinant, and the way back."""
+    eliminated = sum(rows * (rows + columns) for rows in range(size))
+    back = columns * size * (size - 1) // 2
+    return Cost(
+        additions=eliminated + back,
+        multiplications=eliminated + back + 2 * size,
+        divisions=size * (size - 1) // 2 + size * columns,
+    )
+
+
+def _statement(statement: Statement) -> Cost:
+    if isinstance(statement, Let):
+        return expression_cost(statement.value)
+    if isinstance(statement, Require):
+        return expression_cost(statement.condition)
+    if isinstance(statement, Solve):
+        entries = _total(map(expression_cost, (*statement.matrix, *statement.right)))
+        return entries + solve_cost(statement.size, statement.columns)
+    if isinstance(statement, Call):
+        return _total(expression_cost(value) for _, value in statement.given) + cost_of(statement.program)
+    if isinstance(statement, FindRoot):
+        return cost_of(statement.trial) * TRIALS + cost_of(statement.finish) * FINISHED
+    one_pass = _total(map(_statement, statement.step)) + _total(map(expression_cost, (statement.done, *statement.following)))
+    return _total(map(expression_cost, statement.start)) + one_pass * statement.limit
+
+
+def _product(node: sp.Expr) -> Cost:
+    """Factors above and below the line; a coefficient is one more, unless it is a sign."""
+    coefficient, rest = node.as_coeff_Mul()
+    above = below = 0
+    inner = Cost()
+    for factor in sp.Mul.make_args(rest):
+        base, exponent = factor.as_base_exp() if isinstance(factor, sp.Pow) else (factor, sp.Integer(1))
+        times = abs(int(exponent))
+        above, below = (above + times, below) if exponent > 0 else (above, below + times)
+        inner += expression_cost(base) * times
+    numerator = abs(coefficient)
+    if isinstance(coefficient, sp.Rational) and coefficient.q not in _BINARY_FRACTIONS:
+        numerator = abs(coefficient.p)
+        below += int(coefficient.q != 1)
+    above += int(numerator != 1 or not above)
+    return inner + Cost(multiplications=above - 1 + max(below - 1, 0), divisions=int(below > 0))
+
+
+def _bounds(program: Program) -> Iterator[Bound]:
+    for statement in program.body:
+        if isinstance(statement, Iterate):
+            yield Bound(program.name, statement.note, statement.limit)
+        elif isinstance(statement, FindRoot):
+            yield Bound(program.name, statement.note, TRIALS)
+        elif isinstance(statement, Call):
+            yield from _bounds(statement.program)
+
+
+def _total(costs: Iterable[Cost]) -> Cost:
+    return sum(costs, start=Cost())

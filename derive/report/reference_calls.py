@@ -1,0 +1,155 @@
+"""Calls of a block in the reference semantics of its programs: what its methods answer, rounded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.equations.rotation_repair import rotation_program
+from derive.ir.constants import (
+    EDGE,
+    FREE_ANGLE,
+    TIE,
+)
+from derive.ir.interpret import Array, evaluate, run
+from derive.ir.program import (
+    Program,
+    Status,
+)
+from derive.ir.symbols import (
+    HOME_ROTATION,
+    ROTATION_ENTRIES,
+)
+from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.parameters import TIE_OF_LENGTHS
+from derive.kinematics.reference_cases import Bytes, Reals
+
+FRAME = ("x", "y", "z", *(r.name for r in ROTATION_ENTRIES))
+_DECIMALS, _ROTATION_DECIMALS = 6, 9
+"""Far coarser than rounding, and fine enough that a rotation is still one."""
+_HIGHEST_BYTE = 3
+
+
+@dataclass(frozen=True)
+class Tested:
+    """A machine: its parameters, what Initialize answers, and everything that programs then read by name."""
+
+    kinematics: Kinematics
+    given: Mapping[str, float]
+    status: Status
+    values: Mapping[str, Array]
+
+    @property
+    def home(self) -> Reals:
+        """Axis values of a platform at its home pose."""
+        position = (float(evaluate(v, self.values)) for v in self.kinematics.mechanism.home[:3])
+        frame = (*position, *(float(self.values[n.name]) for n in HOME_ROTATION))
+        return inverse(self, frame, (), (0.0,) * len(self.kinematics.mechanism.joints))[1]
+
+
+def tested(kinematics: Kinematics, given: Mapping[str, float]) -> Tested:
+    """The machine with these parameters."""
+    values = {name: np.asarray(value, dtype=float) for name, value in given.items()}
+    constants, status = run(kinematics.setup, values)
+    return Tested(kinematics, dict(given), Status(status[()]), values | constants)
+
+
+def forward(machine: Tested, axes: Reals) -> tuple[Status, Reals, Bytes]:
+    """AxesToCartesian: position and rotation by rows, configuration."""
+    kinematics = machine.kinematics
+    found, status = _run(kinematics.forward, machine, _axes(machine, [axes]))
+    if status[0] is not Status.OK:
+        return status[0], (0.0,) * len(FRAME), (0,) * kinematics.configuration_size
+    position, rotation = [float(found[n][0]) for n in FRAME[:3]], [float(found[n][0]) for n in FRAME[3:]]
+    branches = (_branch_byte(float(found[f"branch_{b.name}"][0])) for b in kinematics.branches)
+    order = {joint.name: index for index, joint in enumerate(kinematics.mechanism.joints)}
+    periods = (_period(axes[order[j.name]]) for j in kinematics.period_joints)
+    return Status.OK, (*_rounded(position), *_rounded(rotation, _ROTATION_DECIMALS)), (*branches, *periods)
+
+
+def inverse(machine: Tested, frame: Reals, configuration: Bytes, reference: Reals) -> tuple[Status, Reals]:
+    """CartesianToAxes: of the branches that the configuration admits, the solution nearest to the reference."""
+    kinematics = machine.kinematics
+    nothing = (0.0,) * len(reference)
+    if any(byte > _HIGHEST_BYTE for byte in configuration[: len(kinematics.branches)]):
+        return Status.BAD_INPUT, nothing
+    _, solutions, statuses = branches(machine, frame, configuration, reference)
+    solved = [found for found, status in zip(solutions, statuses, strict=True) if status is Status.OK]
+    if not solved:
+        return statuses[0], nothing
+    chosen = _nearest(machine, solved, reference)
+    limits = _run(kinematics.limits, machine, _axes(machine, [chosen]))[1][0]
+    return (Status.OK, chosen) if limits is Status.OK else (limits, nothing)
+
+
+def branches(
+    machine: Tested, frame: Reals, configuration: Bytes, reference: Reals
+) -> tuple[list[Bytes], list[Reals], list[Status]]:
+    """Every branch that the configuration admits: its bytes, its axis values and its status, limits not tested."""
+    kinematics = machine.kinematics
+    count = len(kinematics.branches)
+    choices = [(1, 2) if byte in (0, 3) else (byte,) for byte in configuration[:count]]
+    slots = sorted(product(*choices), key=lambda slot: slot[::-1])  # the first branch counts fastest
+    values = dict(zip(FRAME, map(np.asarray, frame), strict=True))
+    axes = [j.axis.name for j in kinematics.mechanism.joints]
+    nothing = (0.0,) * len(axes)
+    if kinematics.reads_rotation:
+        made, outcome = run(rotation_program(), {n: values[n] for n in FRAME[3:]})
+        refused = Status(outcome[()])
+        if refused is not Status.OK:
+            return slots, [nothing] * len(slots), [refused] * len(slots)
+        values |= made
+    values |= {j.reference.name: np.asarray(r) for j, r in zip(kinematics.mechanism.joints, reference, strict=True)}
+    values |= {f"sigma_{b.name}": np.array([3.0 - 2.0 * slot[k] for slot in slots]) for k, b in enumerate(kinematics.branches)}
+    values |= {j.turn.name: np.asarray(float(n)) for j, n in zip(kinematics.period_joints, configuration[count:], strict=True)}
+    found, status = _run(kinematics.branch, machine, values | {"": np.zeros(len(slots))})
+    solved = [_rounded([float(found[n][k]) for n in axes]) if status[k] is Status.OK else nothing for k in range(len(slots))]
+    return slots, solved, list(status)
+
+
+def margins(machine: Tested, poses: Sequence[Reals]) -> Array:
+    """The margins of IsSingularity by rows, a column for every pose; not a number where there is none."""
+    kinematics = machine.kinematics
+    found, status = _run(kinematics.singularity, machine, _axes(machine, poses))
+    rows = [found[m.name] for m in kinematics.margins] or [np.ones(len(poses))]
+    return np.where(np.asarray(status == Status.OK, dtype=bool), np.stack(rows), np.nan)
+
+
+def _nearest(machine: Tested, solved: Sequence[Reals], reference: Reals) -> Reals:
+    """The nearest solution: of equals, that of the lowest slot."""
+    kinematics, tie = machine.kinematics, float(machine.values.get(TIE_OF_LENGTHS.name, TIE))
+    compared = [k for k, j in enumerate(kinematics.mechanism.joints) if j in kinematics.distance_joints]
+    best, least = solved[0], np.inf
+    for solution in solved:
+        distance = sum((solution[k] - reference[k]) ** 2 for k in compared)
+        if distance < least - tie:
+            best, least = solution, distance
+    return best
+
+
+def _run(program: Program, machine: Tested, values: Mapping[str, Array]) -> tuple[dict[str, Array], NDArray[np.object_]]:
+    return run(program, {**machine.values, **values})
+
+
+def _axes(machine: Tested, poses: Sequence[Reals]) -> dict[str, Array]:
+    """Axis values by name, a row for every pose, also of a mechanism without axes."""
+    columns = np.array(poses, dtype=float).reshape(len(poses), -1)
+    return {j.axis.name: columns[:, k] for k, j in enumerate(machine.kinematics.mechanism.joints)} | {"": np.zeros(len(poses))}
+
+
+def _branch_byte(margin: float) -> int:
+    return 3 if abs(margin) <= float(FREE_ANGLE) else 1 if margin > 0 else 2
+
+
+def _period(axis: float) -> int:
+    turns = int(np.floor((axis + 180.0 + float(EDGE)) / 360.0))
+    number = turns + 1 if turns >= 0 else turns
+    return number if abs(number) <= 127 else 0
+
+
+def _rounded(values: Sequence[float], decimals: int = _DECIMALS) -> Reals:
+    return tuple(round(v, decimals) + 0.0 for v in values)  # without a negative zero

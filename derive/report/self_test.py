@@ -1,0 +1,276 @@
+"""Vectors for a test on the controller: calls of a block, and what its programs answer by their reference semantics.
+
+Everything is drawn from fixed seeds and rounded, so that it reads the same wherever it is made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from derive.description.mechanism import Joint, Role
+from derive.ir.constants import (
+    LARGEST,
+    SINGULAR,
+)
+from derive.ir.program import (
+    Status,
+)
+from derive.ir.symbols import (
+    SCALE,
+)
+from derive.kinematics.kinematics import Kinematics
+from derive.kinematics.reference_cases import Bytes, Called, Case, Reals, SelfTest
+from derive.kinematics.sampling import sample_axes
+from derive.report.reference_calls import Tested, branches, forward, inverse, margins, tested
+
+_CANDIDATES, _LOOP_CANDIDATES = 300, 3000
+"""Axis values that are drawn: of a closed loop few can be assembled."""
+_TRIED = 8
+"""Regular poses, among which the one with the most solutions is tested on every branch."""
+_REGULAR = 0.05
+"""Margins at a regular pose are at least this."""
+_SINGULAR = 1e-5
+"""Margins at a singular pose are at most this: a hundredth of what IsSingularity calls singular."""
+_AWAY = 0.02
+"""How far the legs of a platform are from those at its home pose."""
+_TOO_SHORT = 0.2
+"""Legs times this hold no platform."""
+_SIZE = 100.0
+"""How far linear axes go in a machine without lengths."""
+_NO_ROTATION = 1.1
+"""A rotation times this is none."""
+
+
+def self_test(kinematics: Kinematics) -> SelfTest:
+    """The vectors of a mechanism: a machine that is refused, the nominal one, and that with limits around a pose."""
+    nominal = _nominal(kinematics)
+    found = _Vectors(nominal)
+    machines = [nominal]
+    if (wrong := _refused(nominal)) is not None:
+        machines.insert(0, wrong)
+    if (limited := _limited(nominal, found.poses[0])) is not None:
+        machines.append(limited)
+    cases: list[Case] = []
+    for index, machine in enumerate(machines):
+        cases.append(Case(Called.INITIALIZE, index, machine.status))
+        own = found.cases if machine is nominal else _once_more(machine, found)
+        cases += [replace(case, machine=index) for case in own]
+    return SelfTest(tuple(m.given for m in machines), tuple(cases))
+
+
+def _nominal(kinematics: Kinematics) -> Tested:
+    """The nominal machine, with an offset on every axis where it may have one."""
+    given = {p.name: p.nominal for p in kinematics.parameters}
+    offsets = {j.offset.name: 10.5 * (i + 1) for i, j in enumerate(kinematics.mechanism.joints)}
+    shifted = tested(kinematics, given | offsets)
+    return shifted if shifted.status is Status.OK else tested(kinematics, given)
+
+
+def _refused(nominal: Tested) -> Tested | None:
+    """A machine that Initialize refuses: without its first length, or with limits the wrong way round."""
+    lengths = [p.name for p in nominal.kinematics.parameters if p.role is Role.LENGTH]
+    keys = [j.key for j in nominal.kinematics.mechanism.joints]
+    wrong = [{lengths[0]: 0.0}] if lengths else [{f"lower_{keys[0]}": 1.0, f"upper_{keys[0]}": -1.0}] if keys else []
+    found = (tested(nominal.kinematics, {**nominal.given, **change}) for change in wrong)
+    return next((machine for machine in found if machine.status is not Status.OK), None)
+
+
+def _limited(nominal: Tested, axes: Reals) -> Tested | None:
+    """The machine with limits that leave every axis one unit in each direction."""
+    keys = [j.key for j in nominal.kinematics.mechanism.joints]
+    limits = {f"lower_{k}": round(v - 1.0, 6) for k, v in zip(keys, axes, strict=True)}
+    limits |= {f"upper_{k}": round(v + 1.0, 6) for k, v in zip(keys, axes, strict=True)}
+    machine = tested(nominal.kinematics, {**nominal.given, **limits})
+    return machine if keys and machine.status is Status.OK else None
+
+
+def _once_more(machine: Tested, found: _Vectors) -> Iterator[Case]:
+    """What another machine answers to the first calls.
+
+    One that is refused says so, one with limits finds a single solution, and none at another pose."""
+    first = [c for c in found.cases if c.status is Status.OK and c.called in (Called.FORWARD, Called.INVERSE)]
+    inverses = [c for c in first if c.called is Called.INVERSE and c.frame == found.frames[0]]
+    others = [c for c in first if c.called is Called.INVERSE and c.frame != found.frames[0]]
+    chosen = [next(c for c in first if c.called is Called.FORWARD), *inverses]
+    if machine.status is not Status.OK:
+        yield from (replace(case, status=machine.status) for case in chosen[:2])
+        return
+    for case in (*inverses, *others[:1]):
+        status, axes = inverse(machine, case.frame, case.configuration, case.reference)
+        yield replace(case, status=status, axes=axes or case.axes)
+
+
+class _Vectors:
+    """Poses of one machine, and the cases at them."""
+
+    def __init__(self, machine: Tested) -> None:
+        self.machine = machine
+        self._mechanism = machine.kinematics.mechanism
+        self._candidates = _candidates(machine)
+
+    @cached_property
+    def poses(self) -> tuple[Reals, ...]:
+        """Axis values of up to three regular poses; the first has the most solutions."""
+        poses = self._regular[: 1 if self._mechanism.search else _TRIED]
+        solutions = [sum(status is Status.OK for status in self._statuses(axes)) for axes in poses]
+        best = poses[int(np.argmax(solutions))]
+        return (best, *[axes for axes in self._regular if axes != best][:2])
+
+    @cached_property
+    def frames(self) -> tuple[Reals, ...]:
+        """The frames of these poses."""
+        return tuple(forward(self.machine, axes)[1] for axes in self.poses)
+
+    @cached_property
+    def cases(self) -> tuple[Case, ...]:
+        """All cases of this machine."""
+        return tuple(self._cases())
+
+    def _cases(self) -> Iterator[Case]:
+        """Forward kinematics at every pose, every branch at the first one, singular poses, refusals."""
+        for axes in self.poses:
+            yield self._forward(axes)
+        yield from self._branches()
+        for axes in self.poses[1:]:
+            _, frame, own = forward(self.machine, axes)
+            yield self._inverse(frame, own, axes)
+            if self._mechanism.branches and not self._mechanism.search:
+                yield self._inverse(frame, (0,) * len(own), self._aside(axes))
+        yield self._singularity(self.poses[0])
+        for axes in self._singular():
+            yield self._singularity(axes)
+            case = self._forward(axes)
+            if case.status is not Status.OK or not self._mechanism.rods:  # where the plate is nearly lost digits are, too
+                yield case
+        yield from self._refusals()
+
+    @cached_property
+    def _regular(self) -> list[Reals]:
+        """Poses away from singular ones, to which the inverse leads back."""
+        found: list[Reals] = []
+        for axes, smallest in zip(self._candidates, np.min(np.abs(margins(self.machine, self._candidates)), axis=0), strict=True):
+            if not smallest > _REGULAR:
+                continue
+            _, frame, own = forward(self.machine, axes)
+            status, back = inverse(self.machine, frame, own, axes)
+            if status is Status.OK and np.allclose(back, axes, rtol=0, atol=1e-3):
+                found.append(axes)
+            if len(found) == _TRIED:
+                break
+        return found
+
+    def _statuses(self, axes: Reals) -> list[Status]:
+        """What every branch answers at a pose."""
+        frame = forward(self.machine, axes)[1]
+        every = self._open((0,) * len(self._mechanism.branches))
+        return list(branches(self.machine, frame, every, self._aside(axes))[2])
+
+    def _branches(self) -> Iterator[Case]:
+        """The first pose with its own configuration, and on every branch, its turns open; a search that fails is long."""
+        axes, frame = self.poses[0], self.frames[0]
+        reference, every = self._aside(axes), self._open((0,) * len(self._mechanism.branches))
+        yield self._inverse(frame, forward(self.machine, axes)[2], reference)
+        slots, solutions, statuses = branches(self.machine, frame, every, reference)
+        for slot, found, status in zip(slots, solutions, statuses, strict=True) if slots[0] else ():
+            if status is Status.OK or not self._mechanism.search:
+                yield Case(Called.INVERSE, 0, status, found, reference, frame, self._open(slot))
+
+    def _open(self, slot: Bytes) -> Bytes:
+        """The bytes of a branch with its turns open."""
+        return slot + (0,) * len(self._mechanism.period_joints)
+
+    def _aside(self, axes: Reals) -> Reals:
+        """A reference that is not the answer."""
+        if self._mechanism.search:
+            return axes
+        steps = (17.3 if j.is_angle else 1.7 for j in self._mechanism.joints)
+        return tuple(round(a + (k + 1) * step, 6) for k, (a, step) in enumerate(zip(axes, steps, strict=True)))
+
+    def _forward(self, axes: Reals) -> Case:
+        status, frame, configuration = forward(self.machine, axes)
+        return Case(Called.FORWARD, 0, status, axes, frame=frame, configuration=configuration)
+
+    def _inverse(self, frame: Reals, configuration: Bytes, reference: Reals) -> Case:
+        status, axes = inverse(self.machine, frame, configuration, reference)
+        return Case(Called.INVERSE, 0, status, axes, reference, frame, configuration)
+
+    def _singularity(self, axes: Reals) -> Case:
+        smallest = np.min(np.abs(margins(self.machine, [axes])), initial=np.inf)
+        return Case(Called.SINGULARITY, 0, axes=axes, is_singular=not smallest >= float(SINGULAR))
+
+    def _singular(self) -> Iterator[Reals]:
+        """A pose at which a margin is as good as zero, and axis values at which there is no pose."""
+        yield from [*self._crossing(), *self._square()][:1]
+        nowhere = np.flatnonzero(np.isnan(margins(self.machine, self._candidates)).any(axis=0))
+        yield from (self._candidates[k] for k in nowhere[:1])
+
+    def _crossing(self) -> Iterator[Reals]:
+        """Between two poses on either side of a singular one: halve the way."""
+        found = margins(self.machine, self._candidates)
+        for row in range(len(found)):
+            above, below = np.flatnonzero(found[row] > _REGULAR)[:1], np.flatnonzero(found[row] < -_REGULAR)[:20]
+            for one, other in product(above.tolist(), below.tolist()):
+                axes = self._halved(row, self._candidates[one], self._candidates[other])
+                if axes is not None:
+                    yield axes
+                    return
+
+    def _square(self) -> Iterator[Reals]:
+        """Where a margin does not change its sign: the first pose, with one joint at zero or at a right angle."""
+        for k, joint in enumerate(self._mechanism.joints):
+            for value in (0.0, 90.0, -90.0, 180.0) if joint.is_angle else (0.0,):
+                zero = self.machine.given[joint.offset.name]
+                axes = (*self.poses[0][:k], round(value + zero, 6), *self.poses[0][k + 1 :])
+                found = np.abs(margins(self.machine, [axes]))
+                if np.min(found) < _SINGULAR and not np.isnan(found).any():
+                    yield axes
+
+    def _halved(self, row: int, first: Reals, second: Reals) -> Reals | None:
+        low, high = np.array(first), np.array(second)
+        for _ in range(60):
+            middle = (low + high) / 2.0
+            low, high = (middle, high) if margins(self.machine, [tuple(middle)])[row, 0] > 0.0 else (low, middle)
+        axes = tuple(round(float(v), 6) for v in low)
+        return axes if abs(margins(self.machine, [axes])[row, 0]) < _SINGULAR else None
+
+    def _refusals(self) -> Iterator[Case]:
+        """A number that is too large, far away, no rotation, a tool that points the opposite way, a byte without a meaning."""
+        axes, frame = self.poses[0], self.frames[0]
+        own = forward(self.machine, axes)[2]
+        if axes:
+            yield self._forward((2.0 * float(LARGEST), *axes[1:]))
+        turned, far = (tuple(round(k * v, 6) for v in part) for k, part in ((_NO_ROTATION, frame[3:]), (1e3, frame[:3])))
+        opposite = tuple(v * (1.0 if k % 3 == 0 else -1.0) + 0.0 for k, v in enumerate(frame[3:]))
+        frames = [(2.0 * float(LARGEST), *frame[1:]), (*far, *frame[3:]), (*frame[:3], *turned), (*frame[:3], *opposite)]
+        cases = [self._inverse(other, own, axes) for other in frames]
+        if self._mechanism.branches:
+            cases.append(self._inverse(frame, (4, *own[1:]), axes))
+        yield from (case for case in cases if case.status is not Status.OK)
+
+
+def _candidates(machine: Tested) -> list[Reals]:
+    """Axis values with one decimal, all over the ranges; of a platform, near its home pose."""
+    mechanism = machine.kinematics.mechanism
+    count = _LOOP_CANDIDATES if mechanism.rods else _CANDIDATES
+    if mechanism.is_platform:
+        home = np.array(machine.home)
+        near = home * (1.0 + _AWAY * np.random.default_rng(3).uniform(-1.0, 1.0, (_TRIED, len(home))))
+        drawn = np.vstack([near, _TOO_SHORT * home])
+    elif mechanism.joints:
+        samples = sample_axes(mechanism, dict(machine.values), count, 3)
+        drawn = np.stack([samples[j.axis.name] * _stretch(machine, j) for j in mechanism.joints], axis=1)
+    else:
+        return [()]
+    return [tuple(round(float(v), 1) for v in row) for row in drawn]
+
+
+def _stretch(machine: Tested, joint: Joint) -> float:
+    """Several turns where an axis has them; a size for a machine without lengths."""
+    if joint.is_angle:
+        return 2.0 if joint.multi_turn else 1.0
+    return _SIZE if float(machine.values[SCALE.name]) <= 1.0 else 1.0

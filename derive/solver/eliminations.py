@@ -1,0 +1,86 @@
+"""General consequences of equations, in tiers: each is tried only when the previous gives no subproblem.
+
+* difference: an unknown length that two equations hold affinely is eliminated between them;
+* elimination: an unknown length that one equation holds affinely with a number before it is put into the others;
+* squares: the sum of the squares of two equations, known parts on the other side, loses the angle that
+  turns both (the law of cosines); that of three, as a last resort, every angle that turns all of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+import sympy as sp
+
+from derive.algebra.normal_form import linear_coefficients, reduce_units, split_known
+from derive.equations.problem import Equation, Problem
+from derive.solver.subproblems.naming import Naming
+
+
+def differences(problem: Problem) -> tuple[Equation, ...]:
+    """Equations from which one unknown length has been eliminated."""
+    found: list[Equation] = []
+    for first, second in combinations(problem.equations, 2):
+        for unknown in problem.lengths:
+            rows = [linear_coefficients(e.expression, (unknown,)) for e in (first, second)]
+            if rows[0] is None or rows[1] is None:
+                continue
+            a, b = rows[0][0][0], rows[1][0][0]
+            if a == 0 or b == 0 or problem.unknowns_of(a) or problem.unknowns_of(b):
+                continue
+            expression = reduce_units(b * first.expression - a * second.expression, problem.units, problem.signs)
+            label = f"{first.label} and {second.label}"
+            found.append(Equation(label, expression, first.lets + second.lets))
+    return tuple(found)
+
+
+def eliminations(problem: Problem) -> tuple[Equation, ...]:
+    """Equations in which one unknown length has been written through another equation."""
+    found: list[Equation] = []
+    for source in problem.equations:
+        for unknown in problem.lengths:
+            linear = linear_coefficients(source.expression, (unknown,))
+            if linear is None or linear[0][0] == 0 or linear[0][0].free_symbols:
+                continue
+            value = -linear[1] / linear[0][0]
+            for target in problem.equations:
+                if target is source or unknown not in target.expression.free_symbols:
+                    continue
+                expression = reduce_units(target.expression.xreplace({unknown: value}), problem.units, problem.signs)
+                label = f"{target.label} (through {source.label})"
+                found.append(replace(target, label=label, expression=expression, lets=source.lets + target.lets))
+    return tuple(found)
+
+
+def squares(problem: Problem, count: int = 2) -> tuple[Equation, ...]:
+    """Sums of squares of some equations; the known side is named as a length."""
+    found = [_sum_of_squares(problem, some) for some in combinations(problem.equations, count)]
+    return tuple(equation for equation in found if equation is not None)
+
+
+def squares_of_three(problem: Problem) -> tuple[Equation, ...]:
+    """Sums of squares of three equations."""
+    return squares(problem, 3)
+
+
+def _sum_of_squares(problem: Problem, equations: tuple[Equation, ...]) -> Equation | None:
+    sides = [split_known(e.expression, problem.atoms()) for e in equations]
+    if any(moving == 0 or known == 0 or _has_plain_unknown(problem, moving) for moving, known in sides):
+        return None
+    moving = reduce_units(sum(m**2 for m, _ in sides), problem.units, problem.signs)
+    unknowns = {unknown for e in equations for unknown in problem.unknowns_of(e.expression)}
+    if len(problem.unknowns_of(moving)) not in range(1, len(unknowns)):
+        return None
+    naming = Naming(problem, tuple(let for e in equations for let in e.lets))
+    spanned = [
+        naming.named(-known, f"wrist_{e.label}", "what the unknown links must span")
+        for e, (_, known) in zip(equations, sides, strict=True)
+    ]
+    reach = naming.length("reach", *spanned)
+    return Equation(" + ".join(f"{e.label}²" for e in equations), moving - reach**2, naming.lets)
+
+
+def _has_plain_unknown(problem: Problem, expression: sp.Expr) -> bool:
+    """Whether an angle or a length occurs outside sines and cosines: its square would only be longer."""
+    return bool(expression.free_symbols & {*problem.lengths, *problem.angles})

@@ -1,0 +1,273 @@
+"""Folds: the angle of a two-root step turns, within rounding, to where a later step reaches.
+
+A two-root step aims v at a point (along, across): along cos v + across sin v = beside, and what is ahead is a root,
+-across cos v + along sin v = sigma sqrt(distance² - beside²). What rounding leaves of the radicand, some eps, is sqrt(eps) in
+a root near zero, and eps / root in v. Where a later step needs |e| <= h of v and stands at its own boundary, e is then beyond h
+by far more than rounding, and two singularities at once would lose the pose. So v turns to where the later step reaches, if what
+is left of its own equation is rounding. By how much it turns e says to first order, e + e' t = ± h; where that turns a later
+angle that is nearly free, which no first order tells, see `sweeps`. Where e is within its bound, or the root is not near zero,
+v stays, and nothing of this is looked at.
+
+What is ahead is not projected again: along sin v - across cos v is the root, which is as long as the triangle says even where
+v is free and points anywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, is_compound, linear_coefficients, sine
+from derive.equations.problem import Legs, Measure, Slope
+from derive.ir.constants import (
+    FOLD,
+    FREE_ANGLE,
+    ROUNDING,
+)
+from derive.ir.passes import assemble
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Program,
+    Require,
+    Statement,
+    Status,
+    binds,
+    rewritten,
+)
+from derive.ir.symbols import (
+    SCALE,
+    real,
+)
+from derive.solver.sweeps import WAYS, Sweep, sweep_of, swept
+
+
+@dataclass(frozen=True)
+class _Later:
+    """What a later step needs of the angle of an earlier one: |value| <= size, and how the value follows from the angle."""
+
+    word: str
+    angle: sp.Symbol
+    legs: Legs
+    size: sp.Expr
+    value: sp.Expr
+    chain: tuple[Let, ...]
+    scale: sp.Expr
+
+    @property
+    def bound(self) -> tuple[sp.Symbol, sp.Symbol, sp.Symbol]:
+        """What the earlier step binds: what is ahead, and the cosine and sine of its angle."""
+        return (self.legs.root, cosine(self.angle), sine(self.angle))
+
+    def name(self, word: str) -> sp.Symbol:
+        """A name of this motion."""
+        return real(f"{word}_{self.word}")
+
+    def before(self, name: sp.Symbol) -> sp.Symbol:
+        """The name of a value before the motion."""
+        return real(f"{name.name}_before_{self.word}")
+
+
+def beyond_folds(
+    statements: Sequence[Statement], slopes: Sequence[Slope], measures: Sequence[Measure], scale: sp.Expr
+) -> tuple[Statement, ...]:
+    """The derivation with the angle of every two-root step near its fold where later steps have solutions."""
+    found = list(statements)
+    for slope in slopes:
+        if slope.legs is None:
+            continue
+        found = [_through_legs(s, _angle(slope), slope.legs) for s in found]
+        for step in slopes:
+            later = _later(found, slope, step, scale)
+            if later is not None:
+                found = _moved(found, later, sweep_of(later.chain, later.value, later.angle, measures))
+    return tuple(found)
+
+
+def _angle(slope: Slope) -> sp.Symbol:
+    return real(slope.sigma.name.removeprefix("sigma_"))
+
+
+def _through_legs(statement: Statement, angle: sp.Symbol, legs: Legs) -> Statement:
+    """A multiple of what is ahead or beside as what it is."""
+    own = (cosine(angle), sine(angle))
+    if not isinstance(statement, Let) or statement.name in own or not statement.value.is_polynomial():
+        return statement
+    linear = linear_coefficients(sp.expand(statement.value), own)
+    if linear is None or linear[0][0] == 0:
+        return statement
+    (a, b), rest = linear
+    for pair, leg in (((legs.along, legs.across), legs.beside), ((-legs.across, legs.along), legs.root)):
+        ratio = sp.cancel(a / pair[0])
+        if ratio.is_number and sp.expand(b - ratio * pair[1]) == 0:
+            return replace(statement, value=rest + ratio * leg)
+    return statement
+
+
+def _later(statements: Sequence[Statement], slope: Slope, step: Slope, scale: sp.Expr) -> _Later | None:
+    """What a later step needs of a two-root step; None where it needs nothing."""
+    if slope.legs is None or step.reach is None or step is slope:
+        return None
+    angle = _angle(slope)
+    own = {slope.legs.root, cosine(angle), sine(angle)}
+    dependent: dict[sp.Symbol, Let] = {}
+    for s in statements:
+        if isinstance(s, Let) and s.name not in own and s.value.free_symbols & (dependent.keys() | own):
+            dependent[s.name] = s
+    size, value = step.reach
+    if not value.free_symbols & dependent.keys() or size.free_symbols & dependent.keys():
+        return None
+    value = value.xreplace({n**2: s.value.args[0] for n, s in dependent.items() if isinstance(s.value, Root)})
+    wanted, chain = set(value.free_symbols), list[Let]()
+    for let in reversed(dependent.values()):
+        if let.name in wanted:
+            wanted |= let.value.free_symbols
+            chain.insert(0, let)
+    if slope.legs.beside == 0 and not any(let.value.free_symbols & {cosine(angle), sine(angle)} for let in chain):
+        return None  # what is ahead is the whole distance, however the angle turns
+    return _Later(f"{angle.name}_for_{_angle(step).name}", angle, slope.legs, size, value, tuple(chain), scale)
+
+
+def _moved(statements: Sequence[Statement], later: _Later, sweep: Sweep | None) -> list[Statement]:
+    """The statements with the angle turned, behind where it was bound."""
+    found: list[Statement] = []
+    for s in statements:
+        if not (isinstance(s, Let) and s.name in later.bound):
+            found.append(s)
+            continue
+        found.append(Let(later.before(s.name), s.value.xreplace({n: later.before(n) for n in later.bound}), s.note))
+        if s.name == sine(later.angle):  # the last of the three
+            found += _motion(later, sweep)
+    return found
+
+
+def _motion(later: _Later, sweep: Sweep | None) -> tuple[Let, ...]:
+    """Where the angle turns, in terms of where it was."""
+    lets, names, rates = _rates(later)
+    value, size, rate, excess, divisor, turn = map(later.name, ("value", "size", "rate", "excess", "divisor", "turn"))
+    slope = sp.Add(*[sp.diff(later.value, n) * r for n, r in rates.items() if n in later.value.free_symbols])
+    is_steep = sp.Gt(sp.Abs(rate), ROUNDING * size)
+    flat = sp.Integer(0 if sweep is None else 1)  # a turn so far that it follows
+    follows = () if sweep is None else (*swept(sweep, later.angle, names, rates, later.word), *_swept(later))
+    return (
+        *lets,
+        Let(value, later.value.xreplace(names), f"a later step needs this of {later.angle.name}: no larger in size than"),
+        Let(size, sp.Abs(later.size)),
+        Let(rate, slope.xreplace(names), f"how it changes with {later.angle.name}"),
+        Let(excess, Select(sp.Gt(value, 0), value - size, value + size)),
+        Let(divisor, Select(is_steep, rate, sp.Integer(1))),
+        Let(turn, Select(is_steep, -excess / divisor, flat), "to the boundary of the later step"),
+        *_turned(later, turn),
+        *follows,
+        *_taken(later, is_swept=sweep is not None),
+    )
+
+
+def _turned(later: _Later, turn: sp.Symbol) -> tuple[Let, ...]:
+    """What is ahead, the cosine and the sine behind a turn, and what is left of the step's own equation."""
+    root, cos_v, sin_v = (later.before(n) for n in later.bound)
+    length = later.name("turned_length")
+    return (
+        Let(length, Root(1 + turn**2)),
+        Let(later.name("turned_ahead"), (root + turn * later.legs.beside) / length),
+        Let(later.name("turned_cos"), (cos_v - turn * sin_v) / length),
+        Let(later.name("turned_sin"), (sin_v + turn * cos_v) / length),
+        Let(later.name("turned_cost"), _left(later, "turned"), "what is left of its own equation"),
+    )
+
+
+def _swept(later: _Later) -> tuple[Let, ...]:
+    """The same where the angle follows a later one, the way that costs less; where it is free its equation leaves nothing."""
+    legs, (near, mirrored) = later.legs, (later.name(f"{way}_cost") for way in WAYS)
+    determined = sp.Gt(legs.distance, FREE_ANGLE * later.scale)
+    cos_v, sin_v = later.name("swept_cos"), later.name("swept_sin")
+    chosen = (Select(sp.Le(near, mirrored), *(later.name(f"{way}_{f}") for way in WAYS)) for f in ("cost", "cos", "sin"))
+    return (
+        *(Let(later.name(f"{way}_cost"), Select(determined, _left(later, way), sp.Integer(0))) for way in WAYS),
+        *(Let(n, v) for n, v in zip((later.name("swept_cost"), cos_v, sin_v), chosen, strict=True)),
+        Let(later.name("swept_ahead"), legs.along * sin_v - legs.across * cos_v),
+    )
+
+
+def _left(later: _Later, word: str) -> sp.Expr:
+    cos_v, sin_v = later.name(f"{word}_cos"), later.name(f"{word}_sin")
+    return sp.Abs(later.legs.along * cos_v + later.legs.across * sin_v - later.legs.beside)
+
+
+def _taken(later: _Later, *, is_swept: bool) -> tuple[Let, ...]:
+    """The angle that is taken: as it was far from the fold and where the later step reaches, else turned within rounding."""
+    bests = [later.name(f"best_{word}") for word in ("cost", "ahead", "cos", "sin")]
+    chosen = [later.name(f"turned_{word}") for word in ("cost", "ahead", "cos", "sin")]
+    if is_swept:
+        others = [later.name(f"swept_{word}") for word in ("cost", "ahead", "cos", "sin")]
+        chosen = [Select(sp.Gt(later.name("follows"), 0), b, a) for a, b in zip(chosen, others, strict=True)]
+    note = "turned within rounding, where the rest can be reached"
+    return (
+        *(Let(n, c) for n, c in zip(bests, chosen, strict=True)),
+        *(Let(n, _where_turned(later, n, v), note) for n, v in zip(later.bound, bests[1:], strict=True)),
+    )
+
+
+def _where_turned(later: _Later, name: sp.Symbol, after: sp.Expr) -> sp.Expr:
+    before, value, size = later.before(name), later.name("value"), later.name("size")
+    is_dear = sp.Gt(later.name("best_cost"), ROUNDING * later.scale)
+    near = Select(sp.Le(sp.Abs(value), size), before, Select(is_dear, before, after))
+    return Select(_is_far(later.legs.square, later.scale), before, near)
+
+
+def _is_far(square: sp.Expr, scale: sp.Expr) -> sp.Basic:
+    return sp.Gt(square, FOLD * scale**2)
+
+
+def _rates(later: _Later) -> tuple[list[Let], dict[sp.Symbol, sp.Expr], dict[sp.Symbol, sp.Expr]]:
+    """The chain before the motion and its derivatives by the angle; the names of values, and the derivatives or their names."""
+    cos_v, sin_v = cosine(later.angle), sine(later.angle)
+    names: dict[sp.Symbol, sp.Expr] = {n: later.before(n) for n in later.bound}
+    rates: dict[sp.Symbol, sp.Expr] = {later.legs.root: later.legs.beside, cos_v: -sin_v, sin_v: cos_v}
+    lets: list[Let] = []
+    for let in later.chain:
+        own = names[let.name] = later.before(let.name)
+        more, rate = _rate(let, rates, own, later.word)
+        lets += [Let(m.name, m.value.xreplace(names)) for m in (Let(own, let.value), *more)]
+        rate = rate.xreplace(names)
+        if is_compound(rate):
+            lets.append(Let(real(f"{let.name.name}_rate_{later.word}"), rate))
+            rate = lets[-1].name
+        rates[let.name] = rate
+    return lets, names, rates
+
+
+def _rate(let: Let, rates: Mapping[sp.Symbol, sp.Expr], own: sp.Symbol, word: str) -> tuple[list[Let], sp.Expr]:
+    """The derivative of a value, where those of its parts are known."""
+    if isinstance(let.value, Select):
+        condition, *sides = let.value.args
+        return [], Select(condition, *(_total(side, rates) for side in sides))
+    if not isinstance(let.value, Root):
+        return [], _total(let.value, rates)
+    is_long, divisor = sp.Gt(own, 0), real(f"{let.name.name}_divisor_{word}")
+    rate = Select(is_long, _total(let.value.args[0], rates) / (2 * divisor), sp.Integer(0))
+    return [Let(divisor, Select(is_long, own, sp.Integer(1)))], rate
+
+
+def _total(value: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Expr:
+    return sp.Add(*[sp.diff(value, name) * rate for name, rate in rates.items() if name in value.free_symbols])
+
+
+def far_from_folds(program: Program) -> Program:
+    """The program where no root is near its fold: else it ends, with the status OK and without an answer."""
+    conditions = {
+        node: sp.true
+        for let in program.lets()
+        for node in let.value.atoms(sp.StrictGreaterThan)
+        if node.lhs.is_Symbol and node == _is_far(node.lhs, SCALE)
+    }
+    body: list[Statement] = []
+    for s in program.body:
+        body.append(rewritten(s, lambda e: e.xreplace(conditions)))
+        body += [Require(c, Status.OK, "near a fold") for c in conditions if c.lhs in binds(s)]
+    return assemble(program.name, body, program.outputs) if conditions else program

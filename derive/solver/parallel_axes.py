@@ -1,0 +1,86 @@
+"""Parallel axes: a sum (or difference) of angles as one unknown.
+
+`a4 = a234 - a2 - a3`: where equations hold a2, a3, a4 only through their sum, the sum takes the place of the
+last of them, which follows at the end by the addition theorems.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import sympy as sp
+
+from derive.algebra.angle_sums import Terms, composite, terms_of
+from derive.algebra.normal_form import cosine, polynomial, reduce_units, sine
+from derive.equations.problem import Binding, Equation, Problem
+from derive.ir.program import Let
+
+_FUNCTIONS = ((cosine, sp.cos), (sine, sp.sin))
+
+
+@dataclass(frozen=True)
+class Sum:
+    """`symbol` stands for the signed sum of `terms`; `replaced` is the term that it takes the place of."""
+
+    symbol: sp.Symbol
+    terms: Terms
+    replaced: sp.Symbol
+
+    def replacement(self) -> sp.Expr:
+        """The replaced angle through the sum and the other terms."""
+        signs = dict(self.terms)
+        others = sp.Add(*[a * s for a, s in self.terms if a != self.replaced])
+        return (self.symbol - others) * signs[self.replaced]
+
+
+def candidate_sums(problem: Problem, arguments: Sequence[sp.Expr]) -> tuple[Sum, ...]:
+    """Sums worth a try: every argument with several unknown angles, then every difference of two arguments."""
+    differences = [b - a for a, b in combinations(arguments, 2)]
+    found: dict[sp.Symbol, Sum] = {}
+    for argument in [*arguments, *differences]:
+        expanded = sp.expand(argument)
+        constant = expanded.xreplace(dict.fromkeys(expanded.free_symbols, sp.Integer(0)))  # a turn of the base
+        terms = terms_of(expanded - constant, problem.angles)
+        if terms is not None and len(terms) > 1:
+            found.setdefault(composite(terms), Sum(composite(terms), terms, terms[-1][0]))
+    return tuple(found.values())
+
+
+def substitute(problem: Problem, total: Sum) -> Problem:
+    """The problem with the sum as an unknown in place of one of its terms."""
+    form = total.replacement()
+    angles = tuple(total.symbol if a == total.replaced else a for a in problem.angles)
+    units = (*problem.units, total.symbol)
+    table = {f(total.replaced): polynomial(g(form), units, ()) for f, g in ((sine, sp.sin), (cosine, sp.cos))}
+    table[total.replaced] = form
+
+    def through_sum(equation: Equation) -> Equation:
+        if total.replaced in equation.expression.free_symbols:
+            return equation  # a plain angle is no sine: its turns count, so it waits until the angle is known
+        expression = reduce_units(equation.expression.xreplace(table), units, problem.signs)
+        return replace(equation, expression=expression)
+
+    free = {**problem.free, total.symbol: sp.Add(*[problem.free[a] * s for a, s in total.terms])}
+    equations = tuple(through_sum(e) for e in problem.equations)
+    pending = (*problem.pending, total.replaced)
+    turns = tuple(replace(t, amount=sp.expand(t.amount.xreplace({total.replaced: form}))) for t in problem.turns)
+    return replace(problem, angles=angles, units=units, equations=equations, free=free, pending=pending, turns=turns)
+
+
+def resolve(problem: Problem, total: Sum) -> Binding | None:
+    """The replaced angle, once the sum and the other terms are known."""
+    awaited = (total.symbol, *(a for a, _ in total.terms if a != total.replaced))
+    if any(a in (*problem.angles, *problem.pending) for a in awaited):
+        return None
+    note = f"{total.replaced.name}: what the sum {total.symbol.name} leaves"
+    sign = dict(total.terms)[total.replaced]
+    others = tuple((a, s) for a, s in total.terms if a != total.replaced)
+    rest = composite(others) if len(others) > 1 else others[0][0]
+    form = (total.symbol - rest * (others[0][1] if len(others) == 1 else 1)) * sign
+    units = (*problem.units, total.replaced, rest)
+    amount = sp.Add(*[a * s for a, s in others])
+    named = [Let(f(rest), polynomial(g(amount), units, ())) for f, g in _FUNCTIONS] if len(others) > 1 else []
+    lets = tuple(Let(f(total.replaced), polynomial(g(form), units, ())) for f, g in _FUNCTIONS)
+    return Binding("sum", (total.replaced,), (*named, replace(lets[0], note=note), *lets[1:]))

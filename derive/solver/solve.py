@@ -1,0 +1,147 @@
+"""The driver: peel unknowns by solved subproblems until none is left, or say what is left.
+
+It knows no mechanism and no rule: it asks every rule for candidates, takes the best, substitutes, repeats.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
+from derive.equations.rotations import conditions, rotations
+from derive.ir.program import Statement
+from derive.solver.derivation_record import Ledger
+from derive.solver.eliminations import differences, eliminations, squares, squares_of_three
+from derive.solver.feasible_arc import within_reach
+from derive.solver.folds import beyond_folds
+from derive.solver.parallel_axes import Sum, candidate_sums, resolve, substitute
+from derive.solver.subproblems.affine import affine
+from derive.solver.subproblems.affine_pair import affine_pair
+from derive.solver.subproblems.pair import pair
+from derive.solver.subproblems.polar import polar
+from derive.solver.subproblems.quadratic import quadratic
+from derive.solver.subproblems.spheres import spheres
+from derive.solver.subproblems.trigonometric import trigonometric
+
+Rule = Callable[[Problem, tuple[Equation, ...]], Iterator[Binding]]
+RULES: tuple[Rule, ...] = (affine, affine_pair, pair, polar, trigonometric, quadratic, spheres)
+
+
+def _stated(problem: Problem) -> tuple[Equation, ...]:
+    """The equations, and what the rotation says; of one too many, the rotation is asked when the positions are met."""
+    if problem.is_overdetermined and problem.equations:
+        return problem.equations
+    return problem.equations + rotations(problem)
+
+
+TIERS: tuple[Callable[[Problem], tuple[Equation, ...]], ...] = (_stated, differences, eliminations, squares)
+Resolve = Callable[[sp.Symbol], tuple[Statement, ...]]
+
+
+class Unsolved(Exception):
+    """No subproblem fits what is left; the message shows the unknowns and the equations."""
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """The solution as statements, with its branches and with what must not vanish."""
+
+    statements: tuple[Statement, ...]
+    slopes: tuple[Slope, ...]
+    measures: tuple[Measure, ...]
+    rules: tuple[str, ...]
+    sums: tuple[Sum, ...] = ()
+    residuals: tuple[sp.Expr, ...] = ()
+    """Of one equation too many: what vanishes if the equations agree with each other."""
+    plain: tuple[Statement, ...] = ()
+    """The statements without what keeps roots and free angles where later steps reach: what their names mean."""
+
+
+def solve(problem: Problem, arguments: Sequence[sp.Expr], resolve_angle: Resolve) -> Derivation:
+    """Solve a problem.
+
+    `arguments` are the arguments of sines and cosines in the original equations, where sums of parallel
+    angles can be read. `resolve_angle` gives the statements that bind an angle itself (its turns chosen), for
+    equations that hold it outside sines and cosines.
+    """
+    ledger = Ledger()
+    sums: tuple[Sum, ...] = ()
+    rules: list[str] = []
+    left: list[sp.Expr] = []
+    while problem.angles or problem.lengths or problem.pending:
+        if problem.is_overdetermined and not problem.equations and not left:
+            for condition in conditions(problem):
+                binding = ledger.commit(Binding("rotation", (), condition.lets, residual=condition.expression))
+                left += [binding.residual] if binding.residual is not None else []
+        problem, binding, sums = _next(problem, sums, arguments)
+        binding = ledger.commit(binding)
+        rules.append(binding.rule)
+        plain = [a for a in binding.unknowns if any(a in e.expression.free_symbols for e in problem.equations)]
+        for angle in plain:
+            if angle not in problem.lengths:
+                ledger.append(resolve_angle(angle))
+        problem = _without(problem, binding, ledger)
+    statements = ledger.statements
+    if not problem.is_overdetermined:
+        unfolded = beyond_folds(statements, ledger.slopes, ledger.measures, problem.scale)
+        statements = within_reach(unfolded, ledger.slopes, ledger.measures)
+    return Derivation(statements, ledger.slopes, ledger.measures, tuple(rules), sums, tuple(left), ledger.statements)
+
+
+def _next(
+    problem: Problem, sums: tuple[Sum, ...], arguments: Sequence[sp.Expr]
+) -> tuple[Problem, Binding, tuple[Sum, ...]]:
+    for total in sums:
+        binding = resolve(problem, total) if total.replaced in problem.pending else None
+        if binding is not None:
+            return problem, binding, sums
+    found = _best(candidate for tier in TIERS for candidate in [_candidates(problem, tier(problem))])
+    if found is not None and found.rule != "trigonometric":
+        return problem, found, sums
+    for total in candidate_sums(problem, arguments):
+        trial = substitute(problem, total)
+        wanted = TIERS if found is None else TIERS[:1]  # half the digits of a cosine alone: rather both functions of a sum
+        better = _best([b for b in _candidates(trial, tier(trial)) if total.symbol in b.unknowns] for tier in wanted)
+        if better is not None and (found is None or (better.rank < found.rank and problem.turns)):
+            return trial, better, (*sums, total)
+    if found is None and not problem.is_overdetermined:
+        found = _best([_candidates(problem, squares_of_three(problem))])
+    if found is not None:
+        return problem, found, sums
+    raise Unsolved(_message(problem))
+
+
+def _candidates(problem: Problem, equations: tuple[Equation, ...]) -> list[Binding]:
+    return [binding for rule in RULES for binding in rule(problem, equations)]
+
+
+def _best(tiers: Iterable[list[Binding]]) -> Binding | None:
+    for candidates in tiers:
+        if candidates:
+            return min(candidates, key=lambda b: b.rank)  # min keeps the first of equals: deterministic
+    return None
+
+
+def _without(problem: Problem, binding: Binding, ledger: Ledger) -> Problem:
+    """The problem once the binding is known."""
+    known = set(binding.unknowns)
+    rest = replace(
+        problem,
+        angles=tuple(a for a in problem.angles if a not in known),
+        lengths=tuple(v for v in problem.lengths if v not in known),
+        pending=tuple(a for a in problem.pending if a not in known),
+        definitions=ledger.definitions(problem.units),
+    )
+    equations = tuple(e for e in (*problem.equations, *binding.new_equations) if rest.unknowns_of(e.expression))
+    return rest.with_equations(equations)
+
+
+def _message(problem: Problem) -> str:
+    unknowns = ", ".join(str(u) for u in (*problem.lengths, *problem.angles, *problem.pending))
+    if not problem.equations:
+        return f"the closure does not determine {unknowns}"
+    left = "\n".join(f"    {e.label}: {e.expression} = 0" for e in problem.equations)
+    return f"no subproblem determines {unknowns}; equations left:\n{left}"

@@ -1,0 +1,28 @@
+"""Affine:  k v + c = 0  with k never zero.
+
+One root, v = -c / k. Slope k. No degenerate case: an equation whose k can vanish is not taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import sympy as sp
+
+from derive.algebra.normal_form import linear_coefficients
+from derive.equations.problem import Binding, Equation, Problem
+from derive.ir.program import Let
+
+
+def affine(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every length that one equation determines by itself."""
+    for equation in equations:
+        unknowns = problem.unknowns_of(equation.expression)
+        if len(unknowns) != 1 or unknowns[0] not in problem.lengths:
+            continue
+        linear = linear_coefficients(equation.expression, unknowns)
+        if linear is None or not problem.is_never_zero(linear[0][0]):
+            continue
+        (slope,), rest = linear
+        note = f"{unknowns[0].name}: affine in the {equation.label} equation"
+        yield Binding("affine", unknowns, (*equation.lets, Let(unknowns[0], sp.expand(-rest / slope), note)))

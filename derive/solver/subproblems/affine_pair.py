@@ -1,0 +1,34 @@
+"""Affine pair:  k1 v + m1 w = e1,  k2 v + m2 w = e2  with k1 m2 - k2 m1 never zero.
+
+One root, by Cramer's rule. Slope k1 m2 - k2 m1. No degenerate case: equations whose slope can vanish are not taken.
+Each coefficient may vanish by itself: a table that turns exchanges its axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+from derive.algebra.normal_form import linear_coefficients
+from derive.equations.problem import Binding, Equation, Problem
+from derive.ir.program import Let
+
+
+def affine_pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every two lengths that two equations determine together."""
+    for first, second in combinations(equations, 2):
+        unknowns = problem.unknowns_of(first.expression)
+        if len(unknowns) != 2 or problem.unknowns_of(second.expression) != unknowns or not set(unknowns) <= set(problem.lengths):
+            continue
+        row1, row2 = (linear_coefficients(e.expression, unknowns) for e in (first, second))
+        if row1 is None or row2 is None:
+            continue
+        ((k1, m1), rest1), ((k2, m2), rest2) = row1, row2
+        slope = problem.reduce(k1 * m2 - k2 * m1)
+        if not problem.is_never_zero(slope):
+            continue
+        note = f"{unknowns[0].name}, {unknowns[1].name}: affine in the {first.label} and {second.label} equations"
+        inverse = slope if slope in problem.signs or -slope in problem.signs else 1 / slope
+        values = [problem.tidy(v * inverse) for v in (m1 * rest2 - m2 * rest1, k2 * rest1 - k1 * rest2)]
+        lets = (Let(unknowns[0], values[0], note), Let(unknowns[1], values[1]))
+        yield Binding("affine pair", unknowns, (*first.lets, *second.lets, *lets))

@@ -1,0 +1,73 @@
+"""Direction:  cos u : sin u = along : across.
+
+One root. Where the measure (the length that turns) vanishes nothing determines u: it takes its reference.
+The angle is normalised by the length of (along, across) itself, so that sin^2 + cos^2 = 1 to rounding.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, sine
+from derive.equations.problem import Problem
+from derive.ir.constants import (
+    FREE_ANGLE,
+)
+from derive.ir.primitives import (
+    NearestOnArc,
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Statement,
+)
+from derive.ir.symbols import (
+    real,
+)
+
+
+def direction(
+    problem: Problem,
+    angle: sp.Symbol,
+    *,
+    along: sp.Expr,
+    across: sp.Expr,
+    measure: sp.Expr,
+    note: str,
+    is_length: bool = False,
+    scale: sp.Expr | None = None,
+) -> tuple[Statement, ...]:
+    """Bind cosine and sine of the angle; `measure` decides whether they are determined.
+
+    `is_length`: the measure is the length of (along, across) itself. `scale`: what it is compared with, a length of the machine.
+    """
+    determined = sp.Gt(measure, FREE_ANGLE * (problem.scale if scale is None else scale))
+    cos_free, sin_free = free_angle(problem, angle)
+    names = [real(f"{word}_{angle.name}") for word in ("along", "across", "length")]
+    cos_name, sin_name, length = names
+    square = cos_name**2 + sin_name**2
+    long_enough = determined if is_length else sp.And(determined, sp.Gt(square, 0))
+    return (
+        Let(cos_name, along, note),
+        Let(sin_name, across),
+        Let(length, Select(long_enough, measure if is_length else Root(square), sp.Integer(1))),
+        Let(cosine(angle), Select(determined, cos_name / length, cos_free), "its reference where it is free"),
+        Let(sine(angle), Select(determined, sin_name / length, sin_free)),
+    )
+
+
+def free_angle(problem: Problem, angle: sp.Symbol) -> tuple[sp.Expr, sp.Expr]:
+    """Cosine and sine of the angle where nothing determines it."""
+    free = _free(problem, angle)
+    return sp.cos(free), sp.sin(free)
+
+
+def _free(problem: Problem, angle: sp.Symbol) -> sp.Expr:
+    """The reference, on the half circle that the machine has."""
+    reference = problem.free[angle]
+    if sine(angle) in problem.positive:
+        return NearestOnArc(reference, sp.pi / 2, sp.pi / 2)
+    if cosine(angle) in problem.positive:
+        return NearestOnArc(reference, sp.Integer(0), sp.pi / 2)
+    return reference

@@ -1,0 +1,102 @@
+"""Lateral: a cos u + b sin u = e, where (a, b) is a commanded point that u aims at and e how far beside the arm it is.
+
+Two roots: with h = |(a, b)| and how far the point is ahead, s = sigma sqrt((h - e)(h + e)), cos u = (a e - b s) / h^2 and
+sin u = (b e + a s) / h^2. The radicand stays a product. Slope a sin u - b cos u = s: sigma is its sign.
+Guard: |e| <= h, else the point is nearer to the axis than the arm is beside it. Degenerate case: the point on the axis, where
+no h is left: nothing can be reached unless e vanishes too, and then u is free. So h is the measure where e is zero.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, sine
+from derive.equations.problem import Binding, Equation, Legs, Measure, Problem, Slope
+from derive.ir.constants import (
+    BOUNDARY,
+    FREE_ANGLE,
+)
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.subproblems.direction import direction, free_angle
+from derive.solver.subproblems.naming import Naming
+
+Row = tuple[sp.Expr, sp.Expr, sp.Expr]
+_AHEAD = "how far ahead of the axis the point is; negative: behind"
+
+
+def aimed_at_point(problem: Problem, equation: Equation, angle: sp.Symbol, row: Row) -> Binding:
+    """The two directions in which an arm meets a commanded point."""
+    a, b, e = row
+    naming = Naming(problem, equation.lets)
+    along, across = naming.named(a, f"point_x_{angle.name}"), naming.named(b, f"point_y_{angle.name}")
+    distance = naming.length(f"distance_{angle.name}", along, across, note=f"{angle.name}: of the point from its axis")
+    sigma = real(f"sigma_{angle.name}")
+    scale = equation.scales.get(angle, problem.scale)
+    slope = Slope(sigma, a * sine(angle) - b * cosine(angle), scale)
+    note = f"{angle.name}: aimed by the {equation.label} equation"
+    if e == 0:
+        one_way = _only_way(problem, slope.value)
+        way = sigma if one_way is None else one_way
+        ahead = Let(real(f"ahead_{angle.name}"), way * distance, _AHEAD)
+        known = direction(
+            problem, angle, along=-way * across, across=way * along, measure=distance, note=note, is_length=True
+        )
+        measure = Measure(angle, distance, problem.scale)
+        legs = Legs(ahead.name, distance**2, sp.Integer(0), distance, along, across)
+        with_legs = replace(slope, legs=legs) if one_way is None else None
+        return Binding("lateral", (angle,), (*naming.lets, ahead, *known), with_legs, measure)
+    beside = naming.named(e, f"beside_{angle.name}", "how far beside the arm the point is")
+    return _beside(problem, angle, naming, (along, across, beside, distance), slope, note)
+
+
+def _only_way(problem: Problem, slope: sp.Expr) -> sp.Expr | None:
+    """The sign of the slope, where an equation says that it is, or is opposite to, a length that is positive."""
+    for equation in problem.equations:
+        for sign in (sp.Integer(1), sp.Integer(-1)):
+            if problem.is_positive(problem.reduce(equation.expression - sign * slope)):
+                return sign * -1
+    return None
+
+
+def _beside(
+    problem: Problem,
+    angle: sp.Symbol,
+    naming: Naming,
+    row: tuple[sp.Expr, sp.Expr, sp.Expr, sp.Expr],
+    slope: Slope,
+    note: str,
+) -> Binding:
+    along, across, beside, distance = row
+    words = ("ahead", "ahead_squared", "divisor", "rounding")
+    ahead, square, divisor, rounding = (real(f"{word}_{angle.name}") for word in words)
+    shortest = FREE_ANGLE * problem.scale
+    determined = sp.Gt(distance, shortest)
+    cos_free, sin_free = free_angle(problem, angle)
+    cos_value = (along * beside - across * ahead) / divisor
+    sin_value = (across * beside + along * ahead) / divisor
+    statements: tuple[Statement, ...] = (
+        *naming.lets,
+        Let(rounding, BOUNDARY * shortest**2, "what rounding may leave of a square of lengths"),
+        Let(square, (distance - beside) * (distance + beside), note),
+        Require(sp.Ge(square, -BOUNDARY * distance**2 - rounding), Status.UNREACHABLE, f"{angle.name}: out of reach"),
+        Let(ahead, slope.sigma * Root(square), _AHEAD),
+        Let(divisor, Select(determined, distance**2, sp.Integer(1))),
+        Let(cosine(angle), Select(determined, cos_value, cos_free), "its reference where it is free"),
+        Let(sine(angle), Select(determined, sin_value, sin_free)),
+    )
+    legs = Legs(ahead, square, beside, distance, along, across)
+    return Binding("lateral", (angle,), statements, replace(slope, legs=legs), cosine_alone=True)

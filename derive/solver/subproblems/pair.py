@@ -1,0 +1,86 @@
+"""Pair:  a1 cos u + b1 sin u = e1,  a2 cos u + b2 sin u = e2.
+
+One root, by Cramer's rule. Slope D = a1 b2 - a2 b1. Two kinds are taken:
+
+* Turned by u or against it (a1 = s b2 = A, a2 = -s b1 = B with s = +1, -1 or a direction of the machine):
+  D = s (A^2 + B^2), cos u : sin u = A e1 + B e2 : s (A e2 - B e1).
+* Any other with a slope that never vanishes: divided by D.
+
+In the first, |(A, B)| must equal |(e1, e2)|. Where this length is always one nothing is divided; where it
+can vanish the angle is free there (degenerate case) and the length is its measure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, linear_coefficients, sine
+from derive.equations.problem import Binding, Equation, Measure, Problem
+from derive.ir.program import Let
+from derive.solver.subproblems.direction import direction
+from derive.solver.subproblems.naming import Naming
+
+Row = tuple[sp.Expr, sp.Expr, sp.Expr]
+
+
+def pair(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every angle that two equations determine together."""
+    for angle in problem.angles:
+        rows = [(e, r) for e in equations for r in [_row(problem, e, angle)] if r is not None]
+        for (first, row1), (second, row2) in combinations(rows, 2):
+            binding = _solve(problem, angle, (first, second), row1, row2)
+            if binding is not None:
+                yield binding
+
+
+def _row(problem: Problem, equation: Equation, angle: sp.Symbol) -> Row | None:
+    expression = equation.expression
+    if problem.unknowns_of(expression) != (angle,) or angle in expression.free_symbols:
+        return None
+    linear = linear_coefficients(expression, (cosine(angle), sine(angle)))
+    return None if linear is None else (linear[0][0], linear[0][1], -linear[1])
+
+
+def _solve(problem: Problem, angle: sp.Symbol, used: tuple[Equation, Equation], row1: Row, row2: Row) -> Binding | None:
+    (a1, b1, e1), (a2, b2, e2) = row1, row2
+    sense = _sense(problem, row1, row2)
+    note = f"{angle.name}: linear pair in the {used[0].label} and {used[1].label} equations"
+    naming = Naming(problem, used[0].lets + used[1].lets)
+    e1, e2 = (naming.named(e, f"{u.label}_of_{angle.name}") for e, u in ((e1, used[0]), (e2, used[1])))
+    slope = problem.reduce(a1 * b2 - a2 * b1)
+    if sense is not None:
+        along = naming.named(a1, f"arm_along_{angle.name}")
+        across = naming.named(a2, f"arm_across_{angle.name}")
+        cos_part = along * e1 + across * e2
+        sin_part = sense * (along * e2 - across * e1)
+        if slope == sense:
+            return _bound(angle, naming, cos_part, sin_part, note)
+        reach = naming.length("reach", e1, e2)
+        scale = problem.scale_of(used[0])
+        known = direction(problem, angle, along=cos_part, across=sin_part, measure=reach, note=note, scale=scale)
+        measure, residual = Measure(angle, reach, scale), reach**2 - along**2 - across**2
+        return Binding("pair", (angle,), (*naming.lets, *known), measure=measure, residual=residual)
+    if not problem.is_never_zero(slope):
+        return None
+    inverse = slope if slope**2 in (1, *(s**2 for s in problem.signs)) else 1 / slope  # ±1 is its own inverse
+    cos_value, sin_value = (
+        problem.tidy(value * inverse) for value in (e1 * b2 - e2 * b1, a1 * e2 - a2 * e1)
+    )
+    return _bound(angle, naming, cos_value, sin_value, note)
+
+
+def _sense(problem: Problem, row1: Row, row2: Row) -> sp.Expr | None:
+    """s where the two rows are one vector turned by the angle (+1), against it (-1) or in a direction of the machine."""
+    (a1, b1, _), (a2, b2, _) = row1, row2
+    for sense in (sp.Integer(1), sp.Integer(-1), *problem.signs):
+        if problem.reduce(a1 - sense * b2) == 0 and problem.reduce(b1 + sense * a2) == 0:
+            return sense
+    return None
+
+
+def _bound(angle: sp.Symbol, naming: Naming, cos_value: sp.Expr, sin_value: sp.Expr, note: str) -> Binding:
+    lets = (Let(cosine(angle), cos_value, note), Let(sine(angle), sin_value))
+    return Binding("pair", (angle,), (*naming.lets, *lets))

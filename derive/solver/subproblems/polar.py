@@ -1,0 +1,93 @@
+"""Polar:  f cos v = a,  f sin v = b  with both f and v unknown.
+
+v = direction of (sigma a, sigma b), f = sigma |(a, b)|. Two roots, or one where f is known to be positive.
+Slope det = f: its sign is the branch. Where |(a, b)| vanishes v is free (degenerate case); it is the measure.
+f is one unknown length, or a product with another angle's sine or cosine, which then becomes known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import permutations
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, linear_coefficients, sine
+from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
+from derive.ir.program import (
+    Let,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.subproblems.direction import direction
+from derive.solver.subproblems.naming import Naming
+
+
+def polar(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every angle and length that two equations determine together."""
+    for angle in problem.angles:
+        for first, second in permutations(equations, 2):
+            in_cosine = _radius(problem, first, cosine(angle))
+            in_sine = _radius(problem, second, sine(angle))
+            if in_cosine is None or in_sine is None or in_cosine[0] != in_sine[0]:
+                continue
+            if {angle, cosine(angle), sine(angle)} & in_cosine[0].free_symbols:
+                continue
+            yield _solve(problem, angle, in_cosine[0], (first, in_cosine[1]), (second, in_sine[1]))
+
+
+def _radius(problem: Problem, equation: Equation, function: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
+    """f and a, where the equation reads f * function = a with a known and f a product of unknowns."""
+    if function not in equation.expression.free_symbols:
+        return None
+    linear = linear_coefficients(equation.expression, (function,))
+    if linear is None or problem.unknowns_of(linear[1]):
+        return None
+    factor, rest = linear[0][0], linear[1]
+    unknown = sp.Mul(*[f for f in sp.Mul.make_args(factor) if problem.unknowns_of(f)])
+    unknown = -unknown if unknown.could_extract_minus_sign() else unknown  # a sum has its minus inside
+    constant = sp.cancel(factor / unknown)
+    if not problem.unknowns_of(unknown) or not problem.is_never_zero(constant):
+        return None
+    return unknown, -rest / constant
+
+
+def _solve(
+    problem: Problem,
+    angle: sp.Symbol,
+    radius: sp.Expr,
+    along: tuple[Equation, sp.Expr],
+    across: tuple[Equation, sp.Expr],
+) -> Binding:
+    naming = Naming(problem, along[0].lets + across[0].lets)
+    a = naming.named(along[1], f"{along[0].label}_of_{angle.name}")
+    b = naming.named(across[1], f"{across[0].label}_of_{angle.name}")
+    distance = naming.length(f"radius_{angle.name}", a, b, note=f"{angle.name}: direction and distance of a point")
+    note = f"{angle.name}: polar angle in the {along[0].label} and {across[0].label} equations"
+    sigma, slope = sp.Integer(1), None
+    if not _is_positive(problem, radius):
+        sigma = real(f"sigma_{angle.name}")
+        slope = Slope(sigma, radius, problem.scale_of(along[0]))
+    known = direction(
+        problem, angle, along=sigma * a, across=sigma * b, measure=distance, note=note, is_length=True,
+        scale=problem.scale_of(along[0]),
+    )
+    measure = _measure(problem, angle, radius, distance, problem.scale_of(along[0]))
+    if radius in problem.lengths:
+        statements = (*naming.lets, Let(radius, sigma * distance), *known)
+        return Binding("polar", (radius, angle), statements, slope, measure)
+    product = Equation(f"{angle.name} radius", radius - sigma * distance, is_length=along[0].is_length)
+    return Binding("polar", (angle,), (*naming.lets, *known), slope, measure, (product,))
+
+
+def _measure(problem: Problem, angle: sp.Symbol, radius: sp.Expr, distance: sp.Expr, scale: sp.Expr) -> Measure:
+    """Of a product such as r sin(phi) the sine alone, a number without a unit: the step that finds r has its own measure."""
+    functions = [f for f in sp.Mul.make_args(radius) if f not in problem.lengths and f.is_Symbol]
+    if len(functions) == 0 or len(functions) == len(sp.Mul.make_args(radius)):
+        return Measure(angle, distance, scale)
+    return Measure(angle, sp.Mul(*functions), sp.Integer(1))
+
+
+def _is_positive(problem: Problem, radius: sp.Expr) -> bool:
+    return problem.is_positive(radius)

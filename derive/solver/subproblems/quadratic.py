@@ -1,0 +1,88 @@
+"""Quadratic:  a v^2 + b v + c = 0  in an unknown length, with a never zero.
+
+Two roots, v = p + sigma root(D), p = -b / 2a, D = p^2 - c / a, kept factored. Slope 2 a (v - p): sigma is its
+sign (times that of a); one root where a quantity known to be positive is a multiple of the slope.
+Guard: D >= 0; where it vanishes both roots meet (degenerate case).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import sympy as sp
+
+from derive.algebra.normal_form import linear_coefficients
+from derive.equations.problem import Binding, Equation, Measure, Problem, Slope
+from derive.ir.constants import (
+    BOUNDARY,
+)
+from derive.ir.primitives import (
+    Root,
+)
+from derive.ir.program import (
+    Let,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.subproblems.naming import Naming
+
+
+def quadratic(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every length that one quadratic equation determines up to a sign."""
+    for equation in equations:
+        unknowns = problem.unknowns_of(equation.expression)
+        if len(unknowns) != 1 or unknowns[0] not in problem.lengths:
+            continue
+        poly = sp.Poly(equation.expression, unknowns[0])
+        if poly.degree() == 2 and problem.is_never_zero(poly.coeff_monomial(unknowns[0] ** 2)):
+            yield _solve(problem, equation, unknowns[0], poly)
+
+
+def _solve(problem: Problem, equation: Equation, unknown: sp.Symbol, poly: sp.Poly) -> Binding:
+    a, b, c = (sp.sympify(poly.coeff_monomial(unknown**k)) for k in (2, 1, 0))
+    naming = Naming(problem, equation.lets)
+    middle = naming.named(sp.cancel(-b / (2 * a)), f"middle_{unknown.name}")
+    square = real(f"root_square_{unknown.name}")
+    scale = equation.scales.get(unknown, 2 * problem.scale)
+    slope = sp.cancel(sp.diff(equation.expression, unknown) / a)
+    written_out = slope.xreplace({let.name: let.value for let in equation.lets})
+    known_sign = _known_sign(problem, written_out, unknown)
+    sigma = real(f"sigma_{unknown.name}") if known_sign is None else sp.Integer(known_sign)
+    half = sp.cancel(scale / (2 * a))
+    radicand = sp.factor(sp.cancel(b**2 / (4 * a**2) - c / a))
+    reaches = Require(sp.Ge(square, -BOUNDARY * half**2), Status.UNREACHABLE, f"{equation.label} cannot reach")
+    statements: tuple[Statement, ...] = (
+        *naming.lets,
+        Let(square, radicand, f"{unknown.name}: quadratic in the {equation.label} equation"),
+        *(() if radicand.is_nonnegative else (reaches,)),
+        Let(unknown, middle + sigma * Root(square)),
+    )
+    over = sp.cancel(scale / a)
+    if known_sign is not None:
+        return Binding("quadratic", (unknown,), statements, measure=Measure(unknown, slope, over, "meet"))
+    return Binding("quadratic", (unknown,), statements, Slope(sigma, slope, over))
+
+
+def _known_sign(problem: Problem, slope: sp.Expr, unknown: sp.Symbol) -> int | None:
+    """The sign of a slope that is a multiple of a positive quantity, other unknowns written through affine equations."""
+    for quantity in problem.positive:
+        value = _through(problem, quantity, unknown)
+        ratio = sp.cancel(slope / value) if value != 0 else sp.Integer(0)
+        if ratio.is_number and ratio != 0:
+            return 1 if ratio > 0 else -1
+    return None
+
+
+def _through(problem: Problem, quantity: sp.Expr, unknown: sp.Symbol) -> sp.Expr:
+    for equation in problem.equations:
+        for other in problem.lengths:
+            linear = linear_coefficients(equation.expression, (other,))
+            if other == unknown or other not in quantity.free_symbols or linear is None or linear[0][0] == 0:
+                continue
+            if not linear[0][0].free_symbols:
+                quantity = sp.expand(quantity.xreplace({other: -linear[1] / linear[0][0]}))
+    return quantity

@@ -1,0 +1,168 @@
+"""Spheres:  |P - C_i| = r_i  for two circles in the plane, or three spheres in space.
+
+Two roots, mirror images in the line or plane of the centres. With n normal to it and p0 the foot,
+P = C_1 + p0 + sigma root(r_1^2 - |p0|^2) n / |n|. The only division is by |n|^2, which vanishes where the centres
+coincide or lie on a line: nothing determines P then, and the pose is refused. Slope: the determinant of the rod
+vectors P - C_i; its sign is sigma. Guard: the rods reach each other; where they barely do, both roots meet.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+
+import sympy as sp
+
+from derive.algebra.normal_form import is_compound
+from derive.equations.problem import Binding, Equation, Problem, Slope
+from derive.ir.constants import (
+    BOUNDARY,
+    FREE_ANGLE,
+)
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A centre and the square of a radius."""
+
+    centre: sp.Matrix
+    radius_square: sp.Expr
+
+
+def spheres(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """All unknown lengths together, where as many equations are spheres about known centres."""
+    unknowns = problem.lengths
+    if len(unknowns) not in (2, 3) or problem.angles or problem.pending:
+        return
+    found = [(e, s) for e in equations for s in [_sphere(problem, e)] if s is not None]
+    for chosen in combinations(found, len(unknowns)):
+        yield _solve(problem, tuple(e for e, _ in chosen), tuple(s for _, s in chosen))
+
+
+def _sphere(problem: Problem, equation: Equation) -> Sphere | None:
+    unknowns = problem.lengths
+    try:
+        poly = sp.Poly(equation.expression, *unknowns)
+    except sp.PolynomialError:
+        return None
+    scale = poly.coeff_monomial(unknowns[0] ** 2)
+    squares = {u**2: scale for u in unknowns}
+    quadratic = {m for m in poly.monoms() if sum(m) == 2}
+    if scale == 0 or not problem.is_never_zero(scale) or len(quadratic) != len(squares):
+        return None
+    if any(sp.cancel(poly.coeff_monomial(u**2) - scale) != 0 for u in unknowns) or poly.total_degree() != 2:
+        return None
+    centre = sp.Matrix([sp.cancel(-poly.coeff_monomial(u) / (2 * scale)) for u in unknowns])
+    constant = poly.coeff_monomial(1) / scale
+    return Sphere(centre, sp.factor(problem.tidy(centre.dot(centre) - constant)))
+
+
+def _solve(problem: Problem, used: tuple[Equation, ...], found: tuple[Sphere, ...]) -> Binding:
+    unknowns = problem.lengths
+    statements: list[Statement] = [let for e in used for let in e.lets]
+    centres = [_named(statements, s.centre, f"centre_{k}", unknowns) for k, s in enumerate(found, 1)]
+    apart = [_named(statements, c - centres[0], f"apart_{k}", unknowns) for k, c in enumerate(centres[1:], 2)]
+    sigma = real("sigma_assembly")
+    parts = _circles(statements, found, apart[0]) if len(unknowns) == 2 else _three(statements, found, apart)
+    foot, normal, normal_square, height_square = parts
+    foot = _named(statements, foot, "foot", unknowns)
+    height = real("height_square")
+    length_scale = _length(found[0].radius_square)
+    if height_square is None:
+        height_square = found[0].radius_square - foot.dot(foot)
+    statements += [
+        Let(height, height_square, "the square of the height over the centres"),
+        Require(sp.Ge(height, -BOUNDARY * length_scale**2), Status.IMPOSSIBLE, "the rods do not meet"),
+        Let(real("rise"), sigma * Root(height / normal_square)),
+    ]
+    for u, c, f, n in zip(unknowns, centres[0], foot, normal, strict=True):
+        statements.append(Let(u, c + f + real("rise") * n))
+    rods = sp.Matrix.hstack(
+        *(_named(statements, sp.Matrix(unknowns) - c, f"rod_{k}", unknowns) for k, c in enumerate(centres, 1))
+    )
+    scale = sp.Mul(*[_length(s.radius_square) for s in found])
+    slope = Slope(sigma, rods.det(), scale)
+    return Binding("spheres", unknowns, tuple(statements), slope)
+
+
+Parts = tuple[sp.Matrix, sp.Matrix, sp.Expr, sp.Expr | None]
+"""Foot, normal, the square of the normal, and of the height where it is known better than from the foot."""
+
+
+def _circles(statements: list[Statement], found: tuple[Sphere, ...], apart: sp.Matrix) -> Parts:
+    """Two circles: the normal is `apart` turned a quarter to the left. The height is Heron's, its factors as they are."""
+    square = _normal_square(statements, apart.dot(apart), found)
+    between, along = real("between_centres"), real("along_centres")
+    first, second = (_named_length(statements, _length(f.radius_square), f"radius_{k}") for k, f in enumerate(found, 1))
+    statements += [
+        Let(between, Root(square)),
+        Let(along, ((first - second) * (first + second) + square) / (2 * square), "foot of the height, as a share"),
+    ]
+    normal = sp.Matrix([-apart[1], apart[0]])
+    sides = (first + second - between, between + first - second, between + second - first, between + first + second)
+    return along * apart, normal, square, sp.Mul(*sides) / (4 * square)
+
+
+def _three(statements: list[Statement], found: tuple[Sphere, ...], apart: list[sp.Matrix]) -> Parts:
+    """Foot and normal for three spheres."""
+    u, v = apart
+    normal = _named(statements, u.cross(v), "normal", (real("x"), real("y"), real("z")))
+    square = _normal_square(statements, normal.dot(normal), found)
+    shares = []
+    for k, w in ((2, u), (3, v)):
+        share = real(f"share_{k}")
+        value = (found[0].radius_square - found[k - 1].radius_square + w.dot(w)) / 2
+        statements.append(Let(share, value, f"how far centre {k} draws the foot"))
+        shares.append(share)
+    foot = (shares[0] * v.cross(normal) + shares[1] * normal.cross(u)) / square
+    return foot, normal, square, None
+
+
+def _normal_square(statements: list[Statement], value: sp.Expr, found: tuple[Sphere, ...]) -> sp.Symbol:
+    square, divisor = real("normal_square"), real("normal_divisor")
+    scale = _length(found[0].radius_square) ** (2 if len(found) == 2 else 4)
+    determined = sp.Gt(square, FREE_ANGLE**2 * scale)
+    statements += [
+        Let(square, value, "normal to the centres"),
+        Require(determined, Status.IMPOSSIBLE, "the centres coincide or lie on a line: nothing holds the plate"),
+        Let(divisor, Select(determined, square, sp.Integer(1))),
+    ]
+    return divisor
+
+
+def _named(statements: list[Statement], vector: sp.Matrix, name: str, unknowns: tuple[sp.Symbol, ...]) -> sp.Matrix:
+    entries = []
+    for value, unknown in zip(vector, unknowns, strict=True):
+        if is_compound(value):
+            symbol = real(f"{name}_{unknown.name}")
+            statements.append(Let(symbol, value))
+            value = symbol
+        entries.append(value)
+    return sp.Matrix(entries)
+
+
+def _named_length(statements: list[Statement], value: sp.Expr, name: str) -> sp.Expr:
+    """The value, under a name where it is not one."""
+    if not is_compound(value):
+        return value
+    statements.append(Let(real(name), value))
+    return real(name)
+
+
+def _length(square: sp.Expr) -> sp.Expr:
+    return sp.sqrt(sp.factor(square))
+

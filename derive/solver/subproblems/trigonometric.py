@@ -1,0 +1,218 @@
+"""Trigonometric:  a cos u + b sin u = e.
+
+Two roots. With h = |(a, b)|, C = e / h and S = sigma sqrt((h - e)(h + e)) / h:
+cos u = (a C - b S) / h,  sin u = (b C + a S) / h. The two factors stay products: expanded they lose half the digits. C and
+S come from these factors alone, tan^2 of half the angle is their ratio: so C^2 + S^2 = 1 to rounding, whatever e has lost.
+Slope a sin u - b cos u = h S: sigma is its sign. Guard: |e| <= h, else there is no solution; where they are
+equal both roots meet (degenerate case). An h that can vanish is refused below 1e-9 of the length it is
+compared with: nothing can be aimed then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import sympy as sp
+
+from derive.algebra.normal_form import cosine, linear_coefficients, reduce_units, sine
+from derive.equations.problem import Binding, Equation, Problem, Slope
+from derive.ir.constants import (
+    BOUNDARY,
+    SHORTEST_LINK,
+)
+from derive.ir.primitives import (
+    Root,
+    Select,
+)
+from derive.ir.program import (
+    Let,
+    Require,
+    Statement,
+    Status,
+)
+from derive.ir.symbols import (
+    real,
+)
+from derive.solver.subproblems.lateral import aimed_at_point
+from derive.solver.subproblems.naming import Naming
+
+
+def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
+    """Every angle that one equation determines up to a sign."""
+    for equation in equations:
+        unknowns = problem.unknowns_of(equation.expression)
+        if len(unknowns) != 1 or unknowns[0] not in problem.angles or unknowns[0] in equation.expression.free_symbols:
+            continue
+        angle = unknowns[0]
+        linear = linear_coefficients(equation.expression, (cosine(angle), sine(angle)))
+        if linear is None:
+            continue
+        (a, b), rest = linear
+        flip = -1 if (a if a != 0 else b).could_extract_minus_sign() else 1
+        if any(_is_commanded(problem, equation, v) for v in (a, b)) and not _is_commanded(problem, equation, rest):
+            yield aimed_at_point(problem, equation, angle, (flip * a, flip * b, -flip * rest))
+        else:
+            yield _solve(problem, equation, angle, _amplitude(problem, equation, angle, flip * a, flip * b, -flip * rest))
+
+
+def _is_commanded(problem: Problem, equation: Equation, coefficient: sp.Expr) -> bool:
+    """Whether a coefficient changes with the commanded position."""
+    written_out = coefficient.xreplace({let.name: let.value for let in equation.lets})
+    return bool(problem.reduce(written_out).free_symbols & {real(c) for c in ("x", "y", "z")})
+
+
+@dataclass(frozen=True)
+class _Amplitude:
+    """h as a product, the direction of (a, b), and e with squares written through h."""
+
+    naming: Naming
+    length: sp.Expr
+    guard: tuple[Statement, ...]
+    cos_unit: sp.Expr
+    sin_unit: sp.Expr
+    right: sp.Expr
+    slope: sp.Expr
+    slope_scale: sp.Expr
+    factors: tuple[sp.Expr, sp.Expr] | None = None
+    """h - e and h + e, where they are known better than by what they say."""
+    is_signed: bool = False
+    """Whether h may be negative."""
+
+
+def _amplitude(
+    problem: Problem, equation: Equation, angle: sp.Symbol, a: sp.Expr, b: sp.Expr, e: sp.Expr
+) -> _Amplitude:
+    naming = Naming(problem, equation.lets)
+    slope = a * sine(angle) - b * cosine(angle)
+    common = sp.Mul(*[f for f in sp.Mul.make_args(sp.gcd(a, b)) if f.is_positive])  # it divides, and keeps every sign
+    along, across = sp.cancel(a / common), sp.cancel(b / common)
+    if along.is_number and across.is_number:
+        size = sp.sqrt(along**2 + across**2)
+        return _Amplitude(naming, common * size, (), along / size, across / size, e, slope, common * size)
+    if across == 0 and problem.is_never_zero(along):  # of either sign: sigma is then the sign of the sine
+        length, one = common * along, sp.Integer(1)
+        return _Amplitude(naming, length, (), one, sp.Integer(0), e, sine(angle), one, is_signed=not length.is_positive)
+    square = along**2 + across**2
+    along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
+    effective = naming.length(f"effective_{angle.name}", along, across, note="effective length that the angle turns")
+    if problem.is_never_zero(along**2 + across**2):
+        right, factors = _law_of_cosines(problem, naming, angle, e, (common, square, effective))
+        length = common * effective
+        return _Amplitude(naming, length, (), along / effective, across / effective, right, slope, length, factors)
+    aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
+    divisor = real(f"divisor_{angle.name}")
+    guard = (
+        Require(aimable, Status.UNREACHABLE, f"{angle.name}: its effective length is too short"),
+        Let(divisor, Select(aimable, effective, sp.Integer(1))),
+    )
+    right, factors = _law_of_cosines(problem, naming, angle, e, (common, square, divisor))
+    return _Amplitude(
+        naming, common * divisor, guard, along / divisor, across / divisor, right, slope,
+        equation.scales.get(angle, common * problem.scale), factors,
+    )
+
+
+def _law_of_cosines(
+    problem: Problem, naming: Naming, angle: sp.Symbol, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, sp.Expr]
+) -> tuple[sp.Expr, tuple[sp.Expr, sp.Expr] | None]:
+    """e, h - e and h + e, where these are M - (D - k)^2 and (D + k)^2 - M or the reverse: h = 2 k D.
+
+    D is a multiple of the effective length, k the arm that turns, and M the square of the third side of their triangle.
+    Written out, the terms of D^2 and of M are far larger than what they add up to where the lengths of a machine differ.
+    """
+    common, square, effective = turned
+    number, arm = common.as_coeff_Mul()
+    whole = reduce_units(right, problem.units, problem.signs)
+    share = whole.as_coefficients_dict()[sp.expand(arm**2)]
+    ratio = number / (2 * sp.sqrt(abs(share)))
+    if share == 0 or not ratio.is_rational:
+        return right, None
+    sense, distance, side = sp.sign(share), ratio * effective, sp.sqrt(abs(share)) * arm
+    third = reduce_units(ratio**2 * square + side**2 - sense * whole, problem.units, problem.signs)
+    factored = _factored(_with_units(problem, third))
+    if not (factored.is_Mul or factored.is_Pow) and len(sp.Add.make_args(third)) >= len(sp.Add.make_args(whole)):
+        return right, None
+    third = factored
+    if not _is_square(third):
+        third = naming.product(_positive(third), f"third_square_{angle.name}", "square of the third side")
+    less, more = third - (distance - side) ** 2, (distance + side) ** 2 - third
+    if _is_square(third):
+        less, more = _product(less), _product(more)
+    right = sp.expand(sense * (distance**2 + side**2 - third))
+    return right, (less, more) if sense > 0 else (more, less)
+
+
+def _with_units(problem: Problem, value: sp.Expr) -> sp.Expr:
+    """A normal form with cos^2 + sin^2 of known angles put back where it was one, so that squares can be seen in it.
+
+    p^2 - (p cos u + q sin u)^2 is, in normal form, p^2 - p^2 cos^2 u - ... with 1 - cos^2 u for sin^2 u: with p^2 (cos^2 u +
+    sin^2 u) for its first term it is (p sin u - q cos u)^2.
+    """
+    for angle in problem.units:
+        functions = {cosine(angle), sine(angle)}
+        terms = sp.Add.make_args(sp.expand(value))
+        turned = [t for t in terms if t.free_symbols & functions]
+        seen = {s for t in turned for s in t.free_symbols} - functions
+        unit = cosine(angle) ** 2 + sine(angle) ** 2
+        value = sp.expand(sp.Add(*turned, *(t * unit if t.free_symbols & seen else t for t in terms if t not in turned)))
+    return value
+
+
+def _factored(value: sp.Expr) -> sp.Expr:
+    """In factors, over the roots of numbers that occur."""
+    roots = [r for r in value.atoms(sp.Pow) if r.is_number and not r.is_rational]
+    return sp.factor(value, extension=roots) if roots else sp.factor(value)
+
+
+def _is_square(value: sp.Expr) -> bool:
+    """Whether a value is the square of a rational expression."""
+    return all(f.as_base_exp()[1] % 2 == 0 or (f.is_number and f.is_positive) for f in sp.Mul.make_args(value))
+
+
+def _solve(problem: Problem, equation: Equation, angle: sp.Symbol, amplitude: _Amplitude) -> Binding:
+    sigma = real(f"sigma_{angle.name}")
+    turned = (amplitude.cos_unit, amplitude.sin_unit) != (1, 0)
+    words = ("swing_scale" if turned else "scale", "one_less_cos", "one_plus_cos", "sine_square", "both", "sum")
+    scale, less_cos, plus_cos, square, twice, divisor = (real(f"{word}_{angle.name}") for word in words)
+    cos_name = real(f"cos_swing_{angle.name}") if turned else cosine(angle)
+    sin_name = real(f"sin_swing_{angle.name}") if turned else sine(angle)
+    length, right = amplitude.length, amplitude.right
+    size = sp.Abs if amplitude.is_signed else sp.Add
+    less, more = amplitude.factors or (_product(length - right), _product(length + right))
+    statements: list[Statement] = [
+        *amplitude.naming.lets,
+        *amplitude.guard,
+        Let(scale, length, f"{angle.name}: law of cosines in the {equation.label} equation"),
+        Let(less_cos, less, "1 - cosine, times the scale"),
+        Let(plus_cos, more, "1 + cosine, times the scale"),
+        Let(square, less_cos * plus_cos, "the square of sine times scale"),
+        Require(sp.Ge(square, -BOUNDARY * scale**2), Status.UNREACHABLE, f"{angle.name}: out of reach"),
+        Let(twice, less_cos + plus_cos, "twice the scale, with the rounding of its parts"),
+        Let(divisor, Select(sp.Gt(size(twice), 0), twice, sp.Integer(1))),
+        Let(cos_name, (plus_cos - less_cos) / divisor),
+        Let(sin_name, 2 * sigma * Root(square) / size(divisor)),
+    ]
+    if turned:
+        statements += [
+            Let(cosine(angle), amplitude.cos_unit * cos_name - amplitude.sin_unit * sin_name),
+            Let(sine(angle), amplitude.sin_unit * cos_name + amplitude.cos_unit * sin_name),
+        ]
+    slope = Slope(sigma, amplitude.slope, amplitude.slope_scale, (length, right))
+    return Binding("trigonometric", (angle,), tuple(statements), slope, cosine_alone=True)
+
+
+def _product(value: sp.Expr) -> sp.Expr:
+    """Factored: it reads as lengths compared."""
+    return _positive(sp.factor(value))
+
+
+def _positive(factored: sp.Expr) -> sp.Expr:
+    """Factors with a leading minus inside the one that has most of them."""
+    factors = list(sp.Mul.make_args(factored))
+    sums = [f for f in factors if f.is_Add]
+    if -1 not in factors or not sums:
+        return factored
+    factors.remove(sp.Integer(-1))
+    most = max(sums, key=lambda f: (sum(t.could_extract_minus_sign() for t in f.args), str(f)))
+    return sp.Mul(*[-f if f is most else f for f in factors])
