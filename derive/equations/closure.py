@@ -38,6 +38,9 @@ from derive.ir.symbols import (
     real,
 )
 
+FLANGE = tuple(real(f"flange_{c}") for c in COORDINATE_NAMES)
+"""The flange behind such a point, where it keeps its orientation."""
+
 
 @dataclass(frozen=True)
 class Closure:
@@ -70,6 +73,13 @@ def fixed_lets(mechanism: Mechanism) -> tuple[Let, ...]:
     functions = ((cosine, sp.cos), (sine, sp.sin))
     angles = tuple(Let(f(a), g(a * DEGREE)) for a in fixed_angles(mechanism) for f, g in functions)
     return (*angles, *(let for _, let in _fixed_roots(mechanism.equations, tuple(p.symbol for p in mechanism.parameters))))
+
+
+def fixed_squares(mechanism: Mechanism) -> dict[sp.Symbol, sp.Expr]:
+    """The squares of these roots, by their names."""
+    parameters = tuple(p.symbol for p in mechanism.parameters)
+    own = {real(p.name): p for p in parameters}
+    return {let.name: sp.expand((let.value**2).xreplace(own)) for _, let in _fixed_roots(mechanism.equations, parameters)}
 
 
 @cache
@@ -218,8 +228,9 @@ def _stated_closure(mechanism: Mechanism, offset: dict[str, sp.Symbol], known: s
 
     `known` says what is known of a rod: its "span" where the joints are wanted, its "pivot" where the position is.
     """
-    lets = tuple(Let(real(f"flange_{c}"), real(c) - o, "the flange behind the point") for c, o in offset.items())
-    table = {real(c): real(f"flange_{c}") for c in offset}
+    flange = dict(zip(COORDINATE_NAMES, FLANGE, strict=True))
+    lets = tuple(Let(flange[c], real(c) - o, "the flange behind the point") for c, o in offset.items())
+    table = {real(c): flange[c] for c in offset}
     wanted = {j.symbol for j in mechanism.joints} if known == "span" else set(map(real, COORDINATE_NAMES))
     equations = [
         _equation(mechanism, _label(e, number), sp.sympify(e).xreplace(table))

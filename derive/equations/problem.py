@@ -129,6 +129,10 @@ class Problem:
     """The entries of the commanded rotation, by rows; none where it is not commanded."""
     columns: tuple[int, ...] = (0, 1, 2)
     """The columns of the commanded rotation that are followed."""
+    position: tuple[sp.Symbol, ...] = ()
+    """The coordinates of the commanded position."""
+    squares: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
+    """The squares of lengths that are roots of parameters."""
     definitions: Mapping[sp.Symbol, sp.Expr] | None = None
     """What known names stand for, as far as they are polynomials: for tests of zero."""
 

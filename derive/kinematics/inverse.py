@@ -14,10 +14,12 @@ from derive.description.mechanism import (
 )
 from derive.equations.axes import axis_lets, finite, free, frozen_lets, plain_angle, reference_lets
 from derive.equations.closure import (
+    FLANGE,
     Closure,
     all_angles,
     closure_at,
     fixed_lets,
+    fixed_squares,
     flange_rotation,
     offset_closure,
     pose_closure,
@@ -109,6 +111,8 @@ def _solve(
         turns=closure.turns,
         rotation=ROTATION_ENTRIES if closure.turns else (),
         columns=closure.columns,
+        position=(*POSITION, *FLANGE),
+        squares=fixed_squares(mechanism),
         positive=tuple(polynomial(p, all_angles(mechanism), signs_of(mechanism)) for p in mechanism.positive),
     )
     return solve(problem, closure.arguments, lambda angle: (*axis_lets(joints[angle]), plain_angle(joints[angle])))

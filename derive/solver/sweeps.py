@@ -6,6 +6,8 @@ first order of u by v is worth anything. But x sin u = y cos u is linear in cos 
 step can reach, and v follows: cos v : sin v = -q : p with p, q what x sin u - y cos u holds of cos v and sin v, of the two
 opposite v that for which (x, y) points along u and not against it. There are two such u, on both sides of the middle of the
 arc, and the one is taken that costs less: what is left of v's own equation. Where p and q vanish any v gives this u, and v stays.
+Where u is free behind v as well, the nearer v is taken: at half of the threshold, for what is nearer to it than rounding is not
+known to be free, and a u that the step behind still takes from (x, y) must not point against it.
 """
 
 from __future__ import annotations
@@ -142,7 +144,7 @@ def _followed(sweep: Sweep, u: sp.Symbol, before: Row, way: str, word: str) -> t
     )  # fmt: skip
     (x1, x2), (y1, y2) = sweep.x, sweep.y
     is_long, one = sp.Gt(radius, BOUNDARY), sp.Integer(1)
-    is_free, (cos_before, sin_before) = sp.Le(sp.Abs(along), FREE_ANGLE * radius), before
+    is_free, (cos_before, sin_before) = sp.Le(sp.Abs(along), FREE_ANGLE * radius / 2), before  # whatever rounding says later
     ahead = Select(is_free, p * sin_before - q * cos_before, along)
     return (
         Let(cos_u, sp.cos(u)),

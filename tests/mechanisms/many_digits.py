@@ -72,8 +72,8 @@ def _code(expression: sp.Basic) -> tuple[object, ...]:
 def _read(expression: sp.Basic) -> tuple[object, ...]:
     if expression == sp.pi:
         return (_NUMBER, +mpmath.pi)
-    if isinstance(expression, sp.Pow) and expression.exp == sp.Rational(1, 2):
-        return (mpmath.sqrt, _code(expression.base))
+    if isinstance(expression, sp.Pow) and not expression.exp.is_Integer:
+        return (mpmath.power, _code(expression.base), _code(expression.exp))
     if isinstance(expression, sp.Symbol):
         return (_NUMBER, mpmath.pi / 180) if expression == DEGREE else (_NAME, expression.name)
     if expression in (sp.true, sp.false):

@@ -36,6 +36,7 @@ from derive.ir.symbols import (
 )
 from derive.solver.subproblems.lateral import aimed_at_point
 from derive.solver.subproblems.naming import Naming
+from derive.solver.subproblems.origin import from_origin
 
 
 def trigonometric(problem: Problem, equations: tuple[Equation, ...]) -> Iterator[Binding]:
@@ -97,7 +98,7 @@ def _amplitude(
     along, across = naming.named(along, f"along_{angle.name}"), naming.named(across, f"across_{angle.name}")
     effective = naming.length(f"effective_{angle.name}", along, across, note="effective length that the angle turns")
     if problem.is_never_zero(along**2 + across**2):
-        right, factors = _law_of_cosines(problem, naming, angle, e, (common, square, effective))
+        right, factors = _law_of_cosines(problem, equation, naming, angle, e, (common, square, effective))
         length = common * effective
         return _Amplitude(naming, length, (), along / effective, across / effective, right, slope, length, factors)
     aimable = sp.Gt(effective, SHORTEST_LINK * common / 2)
@@ -106,7 +107,7 @@ def _amplitude(
         Require(aimable, Status.UNREACHABLE, f"{angle.name}: its effective length is too short"),
         Let(divisor, Select(aimable, effective, sp.Integer(1))),
     )
-    right, factors = _law_of_cosines(problem, naming, angle, e, (common, square, divisor))
+    right, factors = _law_of_cosines(problem, equation, naming, angle, e, (common, square, divisor))
     return _Amplitude(
         naming, common * divisor, guard, along / divisor, across / divisor, right, slope,
         equation.scales.get(angle, common * problem.scale), factors,
@@ -114,7 +115,12 @@ def _amplitude(
 
 
 def _law_of_cosines(
-    problem: Problem, naming: Naming, angle: sp.Symbol, right: sp.Expr, turned: tuple[sp.Expr, sp.Expr, sp.Expr]
+    problem: Problem,
+    equation: Equation,
+    naming: Naming,
+    angle: sp.Symbol,
+    right: sp.Expr,
+    turned: tuple[sp.Expr, sp.Expr, sp.Expr],
 ) -> tuple[sp.Expr, tuple[sp.Expr, sp.Expr] | None]:
     """e, h - e and h + e, where these are M - (D - k)^2 and (D + k)^2 - M or the reverse: h = 2 k D.
 
@@ -123,6 +129,9 @@ def _law_of_cosines(
     """
     common, square, effective = turned
     number, arm = common.as_coeff_Mul()
+    seen = from_origin(problem, equation, right, arm)
+    if seen is not None:
+        return naming.product(seen, f"scaled_cosine_{angle.name}", "cosine times the scale, seen from the origin"), None
     whole = reduce_units(right, problem.units, problem.signs)
     share = whole.as_coefficients_dict()[sp.expand(arm**2)]
     ratio = number / (2 * sp.sqrt(abs(share)))

@@ -832,7 +832,7 @@ class Ac6ThreeParallel(Mechanism):
                     # of two opposite ways
                     near_towards_q1_for_q3 = (
                         near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3
-                        if abs(near_along_q1_for_q3) <= 1e-11*near_radius_q1_for_q3
+                        if abs(near_along_q1_for_q3) <= 5e-12*near_radius_q1_for_q3
                         else near_along_q1_for_q3
                     )
                     near_side_q1_for_q3 = -1.0 if near_towards_q1_for_q3 < 0.0 else 1.0
@@ -865,7 +865,7 @@ class Ac6ThreeParallel(Mechanism):
                         # of two opposite ways
                         mirrored_towards_q1_for_q3 = (
                             mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3
-                            if abs(mirrored_along_q1_for_q3) <= 1e-11*mirrored_radius_q1_for_q3
+                            if abs(mirrored_along_q1_for_q3) <= 5e-12*mirrored_radius_q1_for_q3
                             else mirrored_along_q1_for_q3
                         )
                         mirrored_side_q1_for_q3 = -1.0 if mirrored_towards_q1_for_q3 < 0.0 else 1.0

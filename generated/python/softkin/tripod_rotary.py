@@ -25,8 +25,8 @@ Singularities:
 
 Operations of one call at most (a subtraction is an addition; sines, cosines and arc tangents are counted together):
     forward: 72 additions, 110 multiplications, 10 divisions, 13 square roots, 6 sines
-    inverse: 116 additions, 146 multiplications, 33 divisions, 29 square roots, 3 sines
-    inverse, all 8 branches open: 921 additions, 1168 multiplications, 264 divisions, 232 square roots, 24 sines
+    inverse: 119 additions, 152 multiplications, 33 divisions, 29 square roots, 3 sines
+    inverse, all 8 branches open: 945 additions, 1216 multiplications, 264 divisions, 232 square roots, 24 sines
 
 Verified at 120 poses, before it was written, by a witness that knows the closure equations alone:
     residual of the closure below 1e-12, round trip below 1e-12,
@@ -588,11 +588,13 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
-        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
-        # 1 - cosine, times the scale
-        one_less_cos_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-        # 1 + cosine, times the scale
-        one_plus_cos_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a1 = (
+            2.0*(arm_1_radius - fixed_length_1)*arm_length_1 + (fixed_length_1 - arm_1_radius - span_1_x)*x
+            + (fixed_length_2 - span_1_z)*z - y*y
+        )
+        one_less_cos_a1 = 2.0*arm_length_1*divisor_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        one_plus_cos_a1 = scaled_cosine_a1 + 2.0*arm_length_1*divisor_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
@@ -607,15 +609,15 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # square of the third side
-        third_square_a2 = (
-            (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-            *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a2 = (
+            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*x
+            + (span_2_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1)*y
+            + (span_1_z - fixed_length_2)*z
+            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
@@ -628,15 +630,15 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # square of the third side
-        third_square_a3 = (
-            (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
-            *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a3 = (
+            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*x
+            + (span_3_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius)*y
+            + (span_1_z - fixed_length_2)*z
+            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
@@ -1021,11 +1023,13 @@ class TripodRotary(OffsetKinematics):
         divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
         flange_y = y - point_y  # the flange behind the point
-        third_square_a1 = (arm_length_2 + flange_y)*(arm_length_2 - flange_y)  # square of the third side
-        # 1 - cosine, times the scale
-        one_less_cos_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-        # 1 + cosine, times the scale
-        one_plus_cos_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a1 = (
+            2.0*(arm_1_radius - fixed_length_1)*arm_length_1 + (fixed_length_1 - arm_1_radius - span_1_x)*flange_x
+            + (fixed_length_2 - span_1_z)*flange_z - flange_y*flange_y
+        )
+        one_less_cos_a1 = 2.0*arm_length_1*divisor_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        one_plus_cos_a1 = scaled_cosine_a1 + 2.0*arm_length_1*divisor_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
@@ -1040,15 +1044,15 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # square of the third side
-        third_square_a2 = (
-            (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-            *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a2 = (
+            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*flange_x
+            + (span_2_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1)*flange_y
+            + (span_1_z - fixed_length_2)*flange_z
+            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
@@ -1061,15 +1065,15 @@ class TripodRotary(OffsetKinematics):
             return Status.UNREACHABLE
         divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # square of the third side
-        third_square_a3 = (
-            (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
-            *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a3 = (
+            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*flange_x
+            + (span_3_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius)*flange_y
+            + (span_1_z - fixed_length_2)*flange_z
+            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):

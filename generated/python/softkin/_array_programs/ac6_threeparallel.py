@@ -416,7 +416,7 @@ class ArrayPrograms(Programs):
                 )
                 # of two opposite ways
                 near_towards_q1_for_q3 = select(
-                    absolute(near_along_q1_for_q3) <= 1e-11*near_radius_q1_for_q3,
+                    absolute(near_along_q1_for_q3) <= 5e-12*near_radius_q1_for_q3,
                     near_p_q1_for_q3*sin_q1_before_q1_for_q3 - near_q_q1_for_q3*cos_q1_before_q1_for_q3, near_along_q1_for_q3,
                 )
                 near_side_q1_for_q3 = select(near_towards_q1_for_q3 < 0.0, -1.0, 1.0)
@@ -461,7 +461,7 @@ class ArrayPrograms(Programs):
                 )
                 # of two opposite ways
                 mirrored_towards_q1_for_q3 = select(
-                    absolute(mirrored_along_q1_for_q3) <= 1e-11*mirrored_radius_q1_for_q3,
+                    absolute(mirrored_along_q1_for_q3) <= 5e-12*mirrored_radius_q1_for_q3,
                     mirrored_p_q1_for_q3*sin_q1_before_q1_for_q3 - mirrored_q_q1_for_q3*cos_q1_before_q1_for_q3,
                     mirrored_along_q1_for_q3,
                 )
@@ -1302,7 +1302,7 @@ class ArrayPrograms(Programs):
             )
             # of two opposite ways
             near_towards_q1_for_q3_left_down = select(
-                absolute(near_along_q1_for_q3_left_down) <= 1e-11*near_radius_q1_for_q3_left_down,
+                absolute(near_along_q1_for_q3_left_down) <= 5e-12*near_radius_q1_for_q3_left_down,
                 (
                     near_p_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left
                     - near_q_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left
@@ -1370,7 +1370,7 @@ class ArrayPrograms(Programs):
             )
             # of two opposite ways
             near_towards_q1_for_q3_left_up = select(
-                absolute(near_along_q1_for_q3_left_up) <= 1e-11*near_radius_q1_for_q3_left_up,
+                absolute(near_along_q1_for_q3_left_up) <= 5e-12*near_radius_q1_for_q3_left_up,
                 (
                     near_p_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left
                     - near_q_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left
@@ -1602,7 +1602,7 @@ class ArrayPrograms(Programs):
             )
             # of two opposite ways
             near_towards_q1_for_q3_right_down = select(
-                absolute(near_along_q1_for_q3_right_down) <= 1e-11*near_radius_q1_for_q3_right_down,
+                absolute(near_along_q1_for_q3_right_down) <= 5e-12*near_radius_q1_for_q3_right_down,
                 (
                     near_p_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right
                     - near_q_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right
@@ -1670,7 +1670,7 @@ class ArrayPrograms(Programs):
             )
             # of two opposite ways
             near_towards_q1_for_q3_right_up = select(
-                absolute(near_along_q1_for_q3_right_up) <= 1e-11*near_radius_q1_for_q3_right_up,
+                absolute(near_along_q1_for_q3_right_up) <= 5e-12*near_radius_q1_for_q3_right_up,
                 (
                     near_p_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right
                     - near_q_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right
@@ -1752,7 +1752,7 @@ class ArrayPrograms(Programs):
             )
             # of two opposite ways
             mirrored_towards_q1_for_q3_left_down = select(
-                absolute(mirrored_along_q1_for_q3_left_down) <= 1e-11*mirrored_radius_q1_for_q3_left_down,
+                absolute(mirrored_along_q1_for_q3_left_down) <= 5e-12*mirrored_radius_q1_for_q3_left_down,
                 (
                     mirrored_p_q1_for_q3_left_down*sin_q1_before_q1_for_q3_left
                     - mirrored_q_q1_for_q3_left_down*cos_q1_before_q1_for_q3_left
@@ -1827,7 +1827,7 @@ class ArrayPrograms(Programs):
             )
             # of two opposite ways
             mirrored_towards_q1_for_q3_left_up = select(
-                absolute(mirrored_along_q1_for_q3_left_up) <= 1e-11*mirrored_radius_q1_for_q3_left_up,
+                absolute(mirrored_along_q1_for_q3_left_up) <= 5e-12*mirrored_radius_q1_for_q3_left_up,
                 (
                     mirrored_p_q1_for_q3_left_up*sin_q1_before_q1_for_q3_left
                     - mirrored_q_q1_for_q3_left_up*cos_q1_before_q1_for_q3_left
@@ -1906,7 +1906,7 @@ class ArrayPrograms(Programs):
             )
             # of two opposite ways
             mirrored_towards_q1_for_q3_right_down = select(
-                absolute(mirrored_along_q1_for_q3_right_down) <= 1e-11*mirrored_radius_q1_for_q3_right_down,
+                absolute(mirrored_along_q1_for_q3_right_down) <= 5e-12*mirrored_radius_q1_for_q3_right_down,
                 (
                     mirrored_p_q1_for_q3_right_down*sin_q1_before_q1_for_q3_right
                     - mirrored_q_q1_for_q3_right_down*cos_q1_before_q1_for_q3_right
@@ -1988,7 +1988,7 @@ class ArrayPrograms(Programs):
             )
             # of two opposite ways
             mirrored_towards_q1_for_q3_right_up = select(
-                absolute(mirrored_along_q1_for_q3_right_up) <= 1e-11*mirrored_radius_q1_for_q3_right_up,
+                absolute(mirrored_along_q1_for_q3_right_up) <= 5e-12*mirrored_radius_q1_for_q3_right_up,
                 (
                     mirrored_p_q1_for_q3_right_up*sin_q1_before_q1_for_q3_right
                     - mirrored_q_q1_for_q3_right_up*cos_q1_before_q1_for_q3_right

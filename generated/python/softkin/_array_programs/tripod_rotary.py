@@ -176,11 +176,13 @@ class ArrayPrograms(Programs):
         require(status, effective_a1 > 1e-9*arm_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*arm_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
-        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
-        # 1 - cosine, times the scale
-        one_less_cos_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-        # 1 + cosine, times the scale
-        one_plus_cos_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a1 = (
+            2.0*(arm_1_radius - fixed_length_1)*arm_length_1 + (fixed_length_1 - arm_1_radius - span_1_x)*x
+            + (fixed_length_2 - span_1_z)*z - y*y
+        )
+        one_less_cos_a1 = 2.0*arm_length_1*divisor_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        one_plus_cos_a1 = scaled_cosine_a1 + 2.0*arm_length_1*divisor_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
@@ -193,15 +195,15 @@ class ArrayPrograms(Programs):
         require(status, effective_a2 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 5e-10*arm_length_1, effective_a2, 1.0)
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # square of the third side
-        third_square_a2 = (
-            (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-            *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a2 = (
+            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*x
+            + (span_2_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1)*y
+            + (span_1_z - fixed_length_2)*z
+            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
@@ -212,15 +214,15 @@ class ArrayPrograms(Programs):
         require(status, effective_a3 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 5e-10*arm_length_1, effective_a3, 1.0)
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # square of the third side
-        third_square_a3 = (
-            (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
-            *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a3 = (
+            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*x
+            + (span_3_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius)*y
+            + (span_1_z - fixed_length_2)*z
+            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)
@@ -364,11 +366,13 @@ class ArrayPrograms(Programs):
         require(status, effective_a1 > 1e-9*arm_length_1, Status.UNREACHABLE)
         divisor_a1 = select(effective_a1 > 1e-9*arm_length_1, effective_a1, 1.0)
         swing_scale_a1 = 2.0*arm_length_1*divisor_a1  # a1: law of cosines in the rod 1 equation
-        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
-        # 1 - cosine, times the scale
-        one_less_cos_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-        # 1 + cosine, times the scale
-        one_plus_cos_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a1 = (
+            2.0*(arm_1_radius - fixed_length_1)*arm_length_1 + (fixed_length_1 - arm_1_radius - span_1_x)*x
+            + (fixed_length_2 - span_1_z)*z - y*y
+        )
+        one_less_cos_a1 = 2.0*arm_length_1*divisor_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        one_plus_cos_a1 = scaled_cosine_a1 + 2.0*arm_length_1*divisor_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         require(status, sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1, Status.UNREACHABLE)
@@ -381,15 +385,15 @@ class ArrayPrograms(Programs):
         require(status, effective_a2 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a2 = select(effective_a2 > 5e-10*arm_length_1, effective_a2, 1.0)
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # square of the third side
-        third_square_a2 = (
-            (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-            *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a2 = (
+            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*x
+            + (span_2_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1)*y
+            + (span_1_z - fixed_length_2)*z
+            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         require(status, sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2, Status.UNREACHABLE)
@@ -400,15 +404,15 @@ class ArrayPrograms(Programs):
         require(status, effective_a3 > 5e-10*arm_length_1, Status.UNREACHABLE)
         divisor_a3 = select(effective_a3 > 5e-10*arm_length_1, effective_a3, 1.0)
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # square of the third side
-        third_square_a3 = (
-            (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
-            *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a3 = (
+            (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*x
+            + (span_3_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius)*y
+            + (span_1_z - fixed_length_2)*z
+            - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         require(status, sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3, Status.UNREACHABLE)

@@ -51,26 +51,15 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "A1: its effective length is too short", 0.0)
     divisor_a1 = effective_a1 if effective_a1 > 1e-9*arm_length_1 else 1.0
     swing_scale_a1 = 2.0*arm_length_1*divisor_a1
-    third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)
-    one_less_cos_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-    one_plus_cos_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+    scaled_cosine_a1 = (
+        2.0*(arm_1_radius - fixed_length_1)*arm_length_1 + (fixed_length_1 - arm_1_radius - span_1_x)*x
+        + (fixed_length_2 - span_1_z)*z - y*y
+    )
+    one_less_cos_a1 = 2.0*arm_length_1*divisor_a1 - scaled_cosine_a1
+    one_plus_cos_a1 = scaled_cosine_a1 + 2.0*arm_length_1*divisor_a1
     sine_square_a1 = one_less_cos_a1*one_plus_cos_a1
     if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
-        missing = abs(
-            arm_length_2
-            - root(
-                0.5*abs(
-                    (arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
-                )
-                + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - divisor_a1)*(arm_length_1 - divisor_a1)
-                + 0.5*(arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1)
-                - 0.5*abs(
-                    (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - (arm_length_2 + y)*(arm_length_2 - y)
-                )
-                - (arm_length_2 + y)*(arm_length_2 - y)
-            )
-        )
-        return Diagnosis(Status.UNREACHABLE, "A1: out of reach [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "A1: out of reach", 0.0)
     span_2_x = 0.5*fixed_length_1 + x - 0.5*arm_1_radius
     span_2_y = y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1
     along_a2 = span_2_x - root(3.0)*span_2_y
@@ -80,37 +69,17 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "A2: its effective length is too short", 0.0)
     divisor_a2 = effective_a2 if effective_a2 > 5e-10*arm_length_1 else 1.0
     swing_scale_a2 = arm_length_1*divisor_a2
-    third_square_a2 = (
-        (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-        *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
+    scaled_cosine_a2 = (
+        (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*x
+        + (span_2_y + 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1)*y
+        + (span_1_z - fixed_length_2)*z
+        - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
     )
-    one_less_cos_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
-    one_plus_cos_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+    one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2
+    one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2
     sine_square_a2 = one_less_cos_a2*one_plus_cos_a2
     if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
-        missing = abs(
-            arm_length_2
-            - root(
-                0.5*abs(
-                    (arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
-                    + (
-                        0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                    )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-                )
-                + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a2)*(arm_length_1 - 0.5*divisor_a2)
-                + 0.5*(arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
-                + (
-                    0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-                - 0.5*abs(
-                    (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2)
-                    + (
-                        0.5*span_2_y + 0.5*root(3.0)*span_2_x - arm_length_2
-                    )*(arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-                )
-            )
-        )
-        return Diagnosis(Status.UNREACHABLE, "A2: out of reach [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "A2: out of reach", 0.0)
     span_3_y = y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius
     along_a3 = span_2_x + root(3.0)*span_3_y
     effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)
@@ -118,37 +87,17 @@ def branch(
         return Diagnosis(Status.UNREACHABLE, "A3: its effective length is too short", 0.0)
     divisor_a3 = effective_a3 if effective_a3 > 5e-10*arm_length_1 else 1.0
     swing_scale_a3 = arm_length_1*divisor_a3
-    third_square_a3 = (
-        (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
-        *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+    scaled_cosine_a3 = (
+        (0.5*fixed_length_1 + span_2_x - 0.5*arm_1_radius)*x
+        + (span_3_y + 0.5*root(3.0)*fixed_length_1 - 0.5*root(3.0)*arm_1_radius)*y
+        + (span_1_z - fixed_length_2)*z
+        - 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
     )
-    one_less_cos_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
-    one_plus_cos_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+    one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3
+    one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3
     sine_square_a3 = one_less_cos_a3*one_plus_cos_a3
     if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
-        missing = abs(
-            arm_length_2
-            - root(
-                0.5*abs(
-                    (arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                    - (
-                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
-                )
-                + arm_length_2*arm_length_2 + 0.5*(arm_length_1 - 0.5*divisor_a3)*(arm_length_1 - 0.5*divisor_a3)
-                + 0.5*(arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
-                - 0.5*abs(
-                    (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3)
-                    - (
-                        arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                    )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
-                )
-                - (
-                    arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y
-                )*(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
-            )
-        )
-        return Diagnosis(Status.UNREACHABLE, "A3: out of reach [u]", missing)
+        return Diagnosis(Status.UNREACHABLE, "A3: out of reach", 0.0)
     both_a1 = one_less_cos_a1 + one_plus_cos_a1
     sum_a1 = both_a1 if both_a1 > 0.0 else 1.0
     cos_swing_a1 = (one_plus_cos_a1 - one_less_cos_a1)/sum_a1

@@ -41,8 +41,9 @@ def unrolled(k: Constants) -> Unrolled:
     arm_1_radius_minus_fixed_length_1 = arm_1_radius - fixed_length_1
     arm_length_1_times_shortest_link = 1e-9*arm_length_1
     arm_length_1_times_2 = 2.0*arm_length_1
+    constant_part = 2.0*(arm_1_radius - fixed_length_1)*arm_length_1
     arm_1_radius_by_2_minus_fixed_length_1_by_2 = 0.5*arm_1_radius - 0.5*fixed_length_1
-    constant_part = 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1
+    constant_part_2 = 0.5*root(3.0)*arm_1_radius - 0.5*root(3.0)*fixed_length_1
     share_of_arm_length_1 = 5e-10*arm_length_1
     one_by_2_by_arm_length_2 = 0.5/arm_length_2
     root_of_3_by_2_by_arm_length_2 = 0.5*root(3.0)/arm_length_2
@@ -69,17 +70,18 @@ def unrolled(k: Constants) -> Unrolled:
             return 8*(3.0,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
-        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
-        # 1 - cosine, times the scale
-        one_less_cos_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-        # 1 + cosine, times the scale
-        one_plus_cos_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a1 = (
+            constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
+        )
+        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return 8*(3.0,)
         span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
-        span_2_y = constant_part + y  # rod 2
+        span_2_y = constant_part_2 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
@@ -88,22 +90,19 @@ def unrolled(k: Constants) -> Unrolled:
             return 8*(3.0,)
         divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        arm_length_2_minus_root_of_3_times_span_2_x_by_2 = arm_length_2 - 0.5*root(3.0)*span_2_x
-        arm_length_2_plus_root_of_3_times_span_2_x_by_2 = arm_length_2 + 0.5*root(3.0)*span_2_x
-        # square of the third side
-        third_square_a2 = (
-            (arm_length_2_minus_root_of_3_times_span_2_x_by_2 - 0.5*span_2_y)
-            *(arm_length_2_plus_root_of_3_times_span_2_x_by_2 + 0.5*span_2_y)
+        part_of_scaled_cosine_a2 = (
+            (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_1_z - fixed_length_2)*z
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        part_of_scaled_cosine_a2_2 = constant_part - part_of_scaled_cosine_a2
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a2 = (constant_part_2 + span_2_y)*y - part_of_scaled_cosine_a2_2
+        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return 8*(3.0,)
-        span_3_y = y - constant_part  # rod 3
+        span_3_y = y - constant_part_2  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
@@ -111,15 +110,10 @@ def unrolled(k: Constants) -> Unrolled:
             return 8*(3.0,)
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # square of the third side
-        third_square_a3 = (
-            (arm_length_2_minus_root_of_3_times_span_2_x_by_2 + 0.5*span_3_y)
-            *(arm_length_2_plus_root_of_3_times_span_2_x_by_2 - 0.5*span_3_y)
-        )
-        # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a3 = (span_3_y - constant_part_2)*y - part_of_scaled_cosine_a2_2
+        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
@@ -172,9 +166,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_swing_a1_times_span_1_x_by_divisor_a1 = span_1_x*sin_swing_a1/divisor_a1
         cos_swing_a1_times_span_1_z_by_divisor_a1 = span_1_z*cos_swing_a1/divisor_a1
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
-        pivot_2_y = -constant_part - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_outward = y - pivot_2_y
-        pivot_3_y = constant_part + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_outward = y - pivot_3_y
         open_a3 = mid_a3 if single_a3 > 0.0 else ref_a3  # A3: where its turn is open
         axis_a3_outward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
@@ -197,7 +191,7 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_type2_rods_coplanar_outward_inward_outward = (
             rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
         )
-        pivot_3_y = constant_part + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_inward = y - pivot_3_y
         axis_a3_inward = offset_a3 + arctan2(sin_a3, cos_a3 + 0.0)/DEGREE  # A3: its turn
         if not -180.000000001 <= axis_a3_inward - open_a3 < 179.999999999:
@@ -211,7 +205,7 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
             rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
         )
-        pivot_2_y = -constant_part - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         axis_a2_inward = offset_a2 + arctan2(sin_a2, cos_a2 + 0.0)/DEGREE  # A2: its turn
         if not -180.000000001 <= axis_a2_inward - open_a2 < 179.999999999:
@@ -418,17 +412,18 @@ def unrolled(k: Constants) -> Unrolled:
             return 8*(None,)
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
-        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
-        # 1 - cosine, times the scale
-        one_less_cos_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-        # 1 + cosine, times the scale
-        one_plus_cos_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a1 = (
+            constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
+        )
+        one_less_cos_a1 = swing_scale_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        one_plus_cos_a1 = scaled_cosine_a1 + swing_scale_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return 8*(None,)
         span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
-        span_2_y = constant_part + y  # rod 2
+        span_2_y = constant_part_2 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
@@ -437,22 +432,19 @@ def unrolled(k: Constants) -> Unrolled:
             return 8*(None,)
         divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        arm_length_2_minus_root_of_3_times_span_2_x_by_2 = arm_length_2 - 0.5*root(3.0)*span_2_x
-        arm_length_2_plus_root_of_3_times_span_2_x_by_2 = arm_length_2 + 0.5*root(3.0)*span_2_x
-        # square of the third side
-        third_square_a2 = (
-            (arm_length_2_minus_root_of_3_times_span_2_x_by_2 - 0.5*span_2_y)
-            *(arm_length_2_plus_root_of_3_times_span_2_x_by_2 + 0.5*span_2_y)
+        part_of_scaled_cosine_a2 = (
+            (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_1_z - fixed_length_2)*z
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        part_of_scaled_cosine_a2_2 = constant_part - part_of_scaled_cosine_a2
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a2 = (constant_part_2 + span_2_y)*y - part_of_scaled_cosine_a2_2
+        one_less_cos_a2 = swing_scale_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        one_plus_cos_a2 = scaled_cosine_a2 + swing_scale_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return 8*(None,)
-        span_3_y = y - constant_part  # rod 3
+        span_3_y = y - constant_part_2  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
@@ -460,15 +452,10 @@ def unrolled(k: Constants) -> Unrolled:
             return 8*(None,)
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # square of the third side
-        third_square_a3 = (
-            (arm_length_2_minus_root_of_3_times_span_2_x_by_2 + 0.5*span_3_y)
-            *(arm_length_2_plus_root_of_3_times_span_2_x_by_2 - 0.5*span_3_y)
-        )
-        # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a3 = (span_3_y - constant_part_2)*y - part_of_scaled_cosine_a2_2
+        one_less_cos_a3 = swing_scale_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        one_plus_cos_a3 = scaled_cosine_a3 + swing_scale_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
@@ -525,9 +512,9 @@ def unrolled(k: Constants) -> Unrolled:
         sin_a1 = cos_swing_a1_times_span_1_z_by_divisor_a1 + sin_swing_a1_times_span_1_x_by_divisor_a1
         pivot_1_z = fixed_length_2 - arm_length_1*sin_a1  # rod 1
         rod_1_z = z - pivot_1_z
-        pivot_2_y = -constant_part - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_outward = y - pivot_2_y
-        pivot_3_y = constant_part + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_outward = y - pivot_3_y
         type2_rods_coplanar = (
             (
@@ -551,7 +538,7 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_type2_rods_coplanar_outward_inward_outward = (
             rod_2_x_outward*rod_3_z_inward*y - rod_2_z_outward*rod_3_x_inward*y
         )
-        pivot_3_y = constant_part + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y_inward = y - pivot_3_y
         type2_rods_coplanar = (
             (
@@ -573,7 +560,7 @@ def unrolled(k: Constants) -> Unrolled:
         part_of_type2_rods_coplanar_outward_inward_outward_inward_outward_inward_2 = (
             rod_2_x_inward*rod_3_z_outward*y - rod_2_z_inward*rod_3_x_outward*y
         )
-        pivot_2_y = -constant_part - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y_inward = y - pivot_2_y
         type2_rods_coplanar = (
             (
@@ -669,17 +656,18 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a1 = effective_a1 if effective_a1 > arm_length_1_times_shortest_link else 1.0
         swing_scale_a1 = arm_length_1_times_2*divisor_a1  # a1: law of cosines in the rod 1 equation
-        third_square_a1 = (arm_length_2 + y)*(arm_length_2 - y)  # square of the third side
-        # 1 - cosine, times the scale
-        one_less_cos_a1 = (arm_length_1 + divisor_a1)*(arm_length_1 + divisor_a1) - third_square_a1
-        # 1 + cosine, times the scale
-        one_plus_cos_a1 = third_square_a1 - (divisor_a1 - arm_length_1)*(divisor_a1 - arm_length_1)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a1 = (
+            constant_part + (-arm_1_radius_minus_fixed_length_1 - span_1_x)*x + (fixed_length_2 - span_1_z)*z - y*y
+        )
+        one_less_cos_a1 = arm_length_1_times_2*divisor_a1 - scaled_cosine_a1  # 1 - cosine, times the scale
+        one_plus_cos_a1 = scaled_cosine_a1 + arm_length_1_times_2*divisor_a1  # 1 + cosine, times the scale
         sine_square_a1 = one_less_cos_a1*one_plus_cos_a1  # the square of sine times scale
         # a1: out of reach
         if not (sine_square_a1 >= -1e-12*swing_scale_a1*swing_scale_a1):
             return None
         span_2_x = x - arm_1_radius_by_2_minus_fixed_length_1_by_2  # rod 2
-        span_2_y = constant_part + y  # rod 2
+        span_2_y = constant_part_2 + y  # rod 2
         along_a2 = span_2_x - root(3.0)*span_2_y
         across_a2 = 2.0*span_1_z
         effective_a2 = sqrt(across_a2*across_a2 + along_a2*along_a2)  # effective length that the angle turns
@@ -688,20 +676,18 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a2 = effective_a2 if effective_a2 > share_of_arm_length_1 else 1.0
         swing_scale_a2 = arm_length_1*divisor_a2  # a2: law of cosines in the rod 2 equation
-        # square of the third side
-        third_square_a2 = (
-            (arm_length_2 + 0.5*span_2_y + 0.5*root(3.0)*span_2_x)
-            *(arm_length_2 - 0.5*span_2_y - 0.5*root(3.0)*span_2_x)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a2 = (
+            (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (constant_part_2 + span_2_y)*y
+            + (span_1_z - fixed_length_2)*z - constant_part
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a2 = third_square_a2 - (0.5*divisor_a2 - arm_length_1)*(0.5*divisor_a2 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a2 = (arm_length_1 + 0.5*divisor_a2)*(arm_length_1 + 0.5*divisor_a2) - third_square_a2
+        one_less_cos_a2 = arm_length_1*divisor_a2 - scaled_cosine_a2  # 1 - cosine, times the scale
+        one_plus_cos_a2 = scaled_cosine_a2 + arm_length_1*divisor_a2  # 1 + cosine, times the scale
         sine_square_a2 = one_less_cos_a2*one_plus_cos_a2  # the square of sine times scale
         # a2: out of reach
         if not (sine_square_a2 >= -1e-12*swing_scale_a2*swing_scale_a2):
             return None
-        span_3_y = y - constant_part  # rod 3
+        span_3_y = y - constant_part_2  # rod 3
         along_a3 = span_2_x + root(3.0)*span_3_y
         effective_a3 = sqrt(across_a2*across_a2 + along_a3*along_a3)  # effective length that the angle turns
         # a3: its effective length is too short
@@ -709,15 +695,13 @@ def unrolled(k: Constants) -> Unrolled:
             return None
         divisor_a3 = effective_a3 if effective_a3 > share_of_arm_length_1 else 1.0
         swing_scale_a3 = arm_length_1*divisor_a3  # a3: law of cosines in the rod 3 equation
-        # square of the third side
-        third_square_a3 = (
-            (arm_length_2 + 0.5*root(3.0)*span_2_x - 0.5*span_3_y)
-            *(arm_length_2 + 0.5*span_3_y - 0.5*root(3.0)*span_2_x)
+        # cosine times the scale, seen from the origin
+        scaled_cosine_a3 = (
+            (span_2_x - arm_1_radius_by_2_minus_fixed_length_1_by_2)*x + (span_3_y - constant_part_2)*y
+            + (span_1_z - fixed_length_2)*z - constant_part
         )
-        # 1 - cosine, times the scale
-        one_less_cos_a3 = third_square_a3 - (0.5*divisor_a3 - arm_length_1)*(0.5*divisor_a3 - arm_length_1)
-        # 1 + cosine, times the scale
-        one_plus_cos_a3 = (arm_length_1 + 0.5*divisor_a3)*(arm_length_1 + 0.5*divisor_a3) - third_square_a3
+        one_less_cos_a3 = arm_length_1*divisor_a3 - scaled_cosine_a3  # 1 - cosine, times the scale
+        one_plus_cos_a3 = scaled_cosine_a3 + arm_length_1*divisor_a3  # 1 + cosine, times the scale
         sine_square_a3 = one_less_cos_a3*one_plus_cos_a3  # the square of sine times scale
         # a3: out of reach
         if not (sine_square_a3 >= -1e-12*swing_scale_a3*swing_scale_a3):
@@ -739,7 +723,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_a2 = across_a2*sin_swing_a2/divisor_a2 + along_a2*cos_swing_a2/divisor_a2
         pivot_2_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a2  # rod 2
         rod_2_x = x - pivot_2_x
-        pivot_2_y = -constant_part - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
+        pivot_2_y = -constant_part_2 - root_of_3_times_arm_length_1_by_2*cos_a2  # rod 2
         rod_2_y = y - pivot_2_y
         sin_a2 = along_a2*sin_swing_a2/divisor_a2 - across_a2*cos_swing_a2/divisor_a2
         pivot_2_z = fixed_length_2 - arm_length_1*sin_a2  # rod 2
@@ -751,7 +735,7 @@ def unrolled(k: Constants) -> Unrolled:
         cos_a3 = across_a2*sin_swing_a3/divisor_a3 + along_a3*cos_swing_a3/divisor_a3
         pivot_3_x = arm_1_radius_by_2_minus_fixed_length_1_by_2 + arm_length_1_by_2*cos_a3  # rod 3
         rod_3_x = x - pivot_3_x
-        pivot_3_y = constant_part + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
+        pivot_3_y = constant_part_2 + root_of_3_times_arm_length_1_by_2*cos_a3  # rod 3
         rod_3_y = y - pivot_3_y
         sin_a3 = along_a3*sin_swing_a3/divisor_a3 - across_a2*cos_swing_a3/divisor_a3
         pivot_3_z = fixed_length_2 - arm_length_1*sin_a3  # rod 3
