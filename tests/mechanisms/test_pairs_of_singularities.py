@@ -12,6 +12,7 @@ from tests.mechanisms.cornered import APART, KR6_D3, PAIRED, SPECIAL, places, po
 from tests.mechanisms.corners import factor_program
 from tests.mechanisms.robots import UR5
 
+UR5_IN_METRES = {"d1": 0.089159, "a2": -0.425, "a3": -0.39225, "d4": 0.10915, "d5": 0.09465, "d6": 0.0823}
 BOUND = 3e-11
 """Of what is missed: two free angles at their thresholds of 1e-11, either of them a chord of 2."""
 @pytest.fixture(params=PAIRED, ids=lambda m: m.name)
@@ -76,6 +77,25 @@ def test_a_shoulder_and_an_elbow_at_once() -> None:
         again, _ = robot.forward(robot.inverse(frame, configuration, axes))
         assert np.abs(np.subtract(again.position, frame.position)).max() < 1e-12 * 1000.0
         assert np.abs(np.subtract(again.rotation, frame.rotation)).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    "axes",
+    [
+        (-116.09886093434964, -95.13322290635698, 0.0, -34.28513162476884, 5.729577951313962e-10, -110.67049431370661),
+        (95.82707261452202, 95.13117670236709, 0.005729577951308232, -145.7288344062594, 5.729577951308238e-10)
+        + (-136.40429986496184,),
+    ],
+)
+def test_three_at_once_at_the_threshold_of_a_free_angle(axes: tuple[float, ...]) -> None:
+    """sin A5 is the threshold to all digits, and A6 free for one step and known for the next: a UR5 in metres."""
+    robot = softkin.Ac6ThreeParallel(**UR5_IN_METRES)
+    frame, own = robot.forward(axes)
+    for configuration in (own, None):
+        for reference in (axes, (0.0,) * 6):
+            again, _ = robot.forward(robot.inverse(frame, configuration, reference))
+            assert np.abs(np.subtract(again.position, frame.position)).max() < BOUND
+            assert np.abs(np.subtract(again.rotation, frame.rotation)).max() < BOUND
 
 
 @pytest.mark.parametrize("beyond", [1e-7, 1e-6, 1e-4])

@@ -31,6 +31,8 @@ OTHERS = tuple(m.name for _, m in catalogue() if m.joints and not m.is_platform 
 EXECUTED = ("MC_KIN_TYPE_12_XY", "Kin_Tripod_Rotary")
 """Mechanisms whose Structured Text is asked, too."""
 DECADES = 3.0
+FEWER_DECADES = {"Kin_Delta_P3C_Type3": 1.0}
+"""Twelve lengths: of a wider spread hardly any machine closes."""
 MACHINES, PERTURBED = 25, 6
 ATTEMPTS, FEWEST = 1000, 5
 """Loops of random lengths seldom close."""
@@ -51,13 +53,14 @@ def built(name: str) -> Kinematics:
 
 def parameters_of(mechanism: Mechanism, rng: np.random.Generator) -> Iterator[dict[str, float]]:
     """Random machines, lengths by their decades, in units from micrometres to kilometres."""
+    decades = FEWER_DECADES.get(mechanism.name, DECADES)
     while True:
         unit = 10.0 ** rng.uniform(-3.0, 3.0)
         given = {p.name: p.nominal for p in mechanism.parameters}
         for p in mechanism.parameters:
             if p.role in LENGTHS or (p.role is Role.DISTANCE and rng.integers(2)):
                 sign = rng.choice([-1.0, 1.0]) if p.low < 0.0 else 1.0
-                given[p.name] = float(sign * unit * 10.0 ** rng.uniform(-DECADES, DECADES))
+                given[p.name] = float(sign * unit * 10.0 ** rng.uniform(-decades, decades))
             elif p.role is Role.DISTANCE:
                 given[p.name] = 0.0
             elif p.role is Role.FLAG:
