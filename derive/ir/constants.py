@@ -44,12 +44,14 @@ CONVERGED = sp.Float("1e-11")
 """An iteration has converged where what is left of a length is at most this share of the machine's scale."""
 NEARLY = sp.Float("1e-6")
 """A root of a search lies on a branch whose scaled margin it does not miss by more than this, the root of `BOUNDARY`."""
-TRIALS = 550
+TRIALS = 640
 """Trials of a search for a root, at most."""
 FINISHED = 12
 """Roots of a search that are looked at, at most."""
 MET = sp.Float("1e-10")
 """A root of a search meets the pose: what is left is at most this share of the machine, and so many radians."""
+DAMPED = sp.Float("1e-12")
+"""The square of how slowly an error may fall with the joints, in lengths of the machine, to be mended by them."""
 IMPROVEMENTS = 3
 """Steps of Newton's method that improve a root of a search, at most."""
 TIE = sp.Float("1e-6")

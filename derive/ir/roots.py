@@ -6,10 +6,11 @@ vector, which turn fast where that vector is short. The two roots under the guar
 the curve goes over from one to the other. Such an end is looked at in s with joint = end + scale s², s > 0 on the wanted
 side and s < 0 on the other: there value is smooth. A cell is cut
 
-* where both ends are beyond the guard, or both within, and its slopes say that it comes back in between;
 * where a direction turns by more than 45 degrees: so trials stand close where it turns;
 * where value has one sign at both ends, and its slopes say that it may touch zero in between;
 * where a cubic through values and slopes at both ends has more than one root, or nearly.
+
+The last two hold of the guard as well.
 
 What is left has one root where value changes its sign, else none. A cell too narrow to be cut, over which a direction turns,
 is a jump: there the joint stands still, and the angle is free. A value that is an entry of a rotation is then
@@ -37,7 +38,9 @@ CLOSING = 60
 """Trials that close in on one root at most."""
 RESERVE = 2 * CLOSING + 6
 """What the last cell may take, where trials are counted."""
-NARROW = 1e-6
+NEXT = 1e-6
+"""A trial next to where the guard vanishes that leaves no more than this is offered, too."""
+NARROW = 1e-10
 """A cell narrower than this, over which a direction turns, is a jump (radians)."""
 FLAT = 1e-7
 """Where the guard is on the other side for a shorter part of a cell than this, it is not noticed."""
@@ -45,8 +48,12 @@ FINEST = 1e-15
 """No cell is cut that is shorter than this share of it."""
 GAP = 1e-6
 """A jump is looked at where the guard is not farther beyond zero at both ends."""
-NEAR_ZERO = 0.3
+NEAR_ZERO = 0.5
 """A cubic hides two roots where it turns back below this share of the values at the ends."""
+BENT = 0.125
+"""So much of how slopes differ over a cell their tangents may stay away from zero, and there may be a root: it has kinks."""
+CROWDED = 4 * CELLS
+"""A row that has more cells than this to be cut is cut no more: what is cut there is rounding."""
 SEAM = 1e-3
 """No cell is cut nearer to where the two sides meet: there a slope has no digits."""
 ASIDE = 0.47
@@ -153,6 +160,7 @@ def find_roots(trial: Trial, start: Reals) -> At:
         cut = cells.take(says.cut)
         cells = cut.halves(trial, _where(cut, says.by_guard[says.cut]))
         found.append(_vanishing(cells.take(np.arange(len(cut), len(cells)))))
+        cells = cells.take(np.bincount(cells.rows, minlength=1)[cells.rows] <= CROWDED)
     return _all([*found, *_closed_in(trial, joined(*holding))])
 
 
@@ -171,9 +179,15 @@ def nearest(trial: Trial, finish: Trial, start: Reals) -> tuple[Flags, Reals]:
 
 
 def _vanishing(cells: Cells) -> At:
-    """The beginnings of cells where the value is zero already, on the boundary of the guard too."""
-    is_root = (np.abs(cells.first[:, VALUE]) <= VANISHING) & (cells.first[:, GUARD] >= 0.0)
+    """The beginnings of cells where the value is zero already."""
+    is_root = _vanishes(cells.first)
     return _places(cells.take(is_root), cells.low[is_root])
+
+
+def _vanishes(said: Reals) -> Flags:
+    """Whether a trial is next to a root, whatever there is around it: where the guard vanishes, value has half its digits."""
+    value, guard = np.abs(said[:, VALUE]), said[:, GUARD]
+    return np.asarray((value <= VANISHING) & (guard >= 0.0) | (value <= NEXT) & (np.abs(guard) <= VANISHING))
 
 
 def _start(trial: Trial, start: Reals) -> At:
@@ -181,7 +195,7 @@ def _start(trial: Trial, start: Reals) -> At:
     rows = np.arange(len(start))
     place = At(rows, start, np.ones(len(rows)), np.full(len(rows), -1), np.zeros(len(rows)))
     said = trial(place)
-    is_root = (np.abs(said[:, VALUE]) <= VANISHING) & (said[:, GUARD] >= 0.0)
+    is_root = _vanishes(said)
     return At(rows[is_root], start[is_root], place.side[is_root], place.freed[is_root], place.angle[is_root])
 
 
@@ -222,14 +236,12 @@ def _look(cells: Cells) -> _Verdicts:
     wide = np.abs(cells.joint(cells.high) - cells.joint(cells.low)) > NARROW
     jumps = fast & ~wide & ((g >= -GAP) | (g1 >= -GAP))
     slow = ~fast
-    ends = slow & ((g < 0.0) != (g1 < 0.0)) & ~cells.curved
-    within, beyond = slow & ((g >= 0.0) & (g1 >= 0.0) | cells.curved), slow & (g < 0.0) & (g1 < 0.0) & ~cells.curved
-    nearly = NEAR_ZERO * np.minimum(np.abs(g), np.abs(g1))  # a guard has kinks, tangents are no bound
-    returns = _comes_back(g, dg, g1, dg1, width, nearly) & (within | beyond) & (width > FLAT) & ~cells.curved
+    returns = slow & (width > FLAT) & ~cells.curved & _hides_roots(g, dg, g1, dg1, width)
+    ends = slow & ((g < 0.0) != (g1 < 0.0)) & ~cells.curved & ~returns
+    within = slow & ((g >= 0.0) & (g1 >= 0.0) | cells.curved)
     seen = within & ~returns
     changes = f * f1 <= 0.0
-    dips = seen & ~changes & _comes_back(f, df, f1, df1, width, TOUCHED)
-    doubtful = dips | (seen & _doubtful(f, df * width, f1, df1 * width))
+    doubtful = seen & _hides_roots(f, df, f1, df1, width)
     small = np.minimum(np.abs(f), np.abs(f1)) <= TOUCHED
     seam = cells.curved & (cells.low >= -2.0 * SEAM) & (cells.high <= 2.0 * SEAM)
     again = doubtful & ~small & (width > FINEST) & ~seam
@@ -244,16 +256,25 @@ def _turned(cells: Cells) -> Reals:
     return np.asarray(a[:, ::2] * b[:, ::2] + a[:, 1::2] * b[:, 1::2])
 
 
-def _comes_back(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals, margin: Reals | float) -> Flags:
-    """Whether a value of one sign at both ends heads for zero at both, and its tangents meet beyond, or nearly there.
+def _hides_roots(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
+    """Whether there may be more roots within a cell than its ends tell."""
+    sign = np.where(f < 0.0, -1.0, 1.0)
+    crosses = (sign * (f + df * width) < 0.0) | (sign * (f1 - df1 * width) < 0.0)
+    waves = (f * f1 > 0.0) & (df * df1 > 0.0) & crosses  # a tangent leads to zero, and the value turns before and after
+    return waves | _comes_back(f, df, f1, df1, width) | _doubtful(f, df * width, f1, df1 * width)
 
-    Where they do not meet in between it is bent both ways, and nobody knows.
+
+def _comes_back(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Flags:
+    """Whether a value that has one sign at both ends heads for zero at both, and its tangents meet beyond, or nearly there.
+
+    Where they do not meet in between it is bent both ways, and nobody knows. It has kinks, too: tangents are no bound.
     """
+    margin = TOUCHED + NEAR_ZERO * np.minimum(np.abs(f), np.abs(f1)) + BENT * np.abs(df1 - df) * width
     sign = np.where(f < 0.0, -1.0, 1.0)
     rest = f1 - f - df1 * width  # between 0 and (df - df1) width where the tangents meet in between
     is_bent = ~((rest * (df - df1) > 0.0) & (np.abs(rest) < np.abs(df - df1) * width))
     lowest = sign * (f + df * _between(f, df, f1, df1, width))
-    return np.asarray((sign * df < 0.0) & (sign * df1 > 0.0) & (is_bent | (lowest <= margin)))
+    return np.asarray((f * f1 > 0.0) & (sign * df < 0.0) & (sign * df1 > 0.0) & (is_bent | (lowest <= margin)))
 
 
 def _between(f: Reals, df: Reals, f1: Reals, df1: Reals, width: Reals) -> Reals:
@@ -276,7 +297,7 @@ def _doubtful(f: Reals, a: Reals, f1: Reals, b: Reals) -> Flags:
         turns |= inside
         lowest = np.where(inside, np.minimum(lowest, sign * (f + u * (a + u * (square + u * cube)))), lowest)
     three = (f * f1 < 0.0) & (sign * a >= 0.0) & (sign * b >= 0.0)
-    two = (f * f1 > 0.0) & ~((sign * a < 0.0) & (sign * b > 0.0)) & (lowest <= NEAR_ZERO * np.minimum(np.abs(f), np.abs(f1)))
+    two = (f * f1 > 0.0) & (lowest <= NEAR_ZERO * np.minimum(np.abs(f), np.abs(f1)))
     return np.asarray(turns & (three | two))
 
 
@@ -385,7 +406,9 @@ def _jumps(trial: Trial, cells: Cells) -> At:
     swing = np.hypot(along, across)
     cosine = np.clip(-level / np.where(swing > 0.0, swing, 1.0), -1.0, 1.0)
     centre, half = np.arctan2(across, along), np.arccos(cosine)
-    return _all([place._replace(angle=centre - half), place._replace(angle=centre + half)])
+    both = _all([place._replace(angle=centre - half), place._replace(angle=centre + half)])
+    any_angle = np.tile(np.abs(level) + swing <= NEXT, 2)
+    return _all([both, At(*(column[any_angle] for column in both._replace(angle=both.angle + np.pi)))])
 
 
 def _places(cells: Cells, s: Reals) -> At:

@@ -13,43 +13,13 @@ from dataclasses import dataclass, replace
 import sympy as sp
 
 from derive.algebra.normal_form import cosine, sine
-from derive.description.mechanism import (
-    Mechanism,
-)
+from derive.description.mechanism import Mechanism
 from derive.equations.named_pose import walk
-from derive.ir.constants import (
-    BOUNDARY,
-    IMPROVEMENTS,
-    MET,
-    NEARLY,
-)
+from derive.ir.constants import BOUNDARY, DAMPED, IMPROVEMENTS, MET, NEARLY
 from derive.ir.passes import assemble
-from derive.ir.primitives import (
-    Atan2,
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    FindRoot,
-    Iterate,
-    Let,
-    Output,
-    Program,
-    Require,
-    Solve,
-    Statement,
-    Status,
-    rewritten,
-)
-from derive.ir.symbols import (
-    COORDINATE_NAMES,
-    FREED,
-    FREED_ANGLE,
-    ROTATION_ENTRIES,
-    SCALE,
-    TRIED,
-    real,
-)
+from derive.ir.primitives import Atan2, Root, Select
+from derive.ir.program import FindRoot, Iterate, Let, Output, Program, Require, Solve, Statement, Status, rewritten
+from derive.ir.symbols import COORDINATE_NAMES, FREED, FREED_ANGLE, ROTATION_ENTRIES, SCALE, TRIED, real
 from derive.kinematics.differential import jacobian_entries
 from derive.kinematics.trial_slopes import slope_name, with_slopes
 
@@ -106,26 +76,32 @@ def finish_program(mechanism: Mechanism, trial: Trial, wanted: Sequence[sp.Expr]
     solved = {j: Atan2(real(f"{sine(j).name}_tried"), real(f"{cosine(j).name}_tried")) for j, _ in pairs}
     error = real("error")
     conditions = [sp.Le(error, MET), *(sp.Ge(w, -NEARLY) for w in wanted)]
-    loop = _newton(mechanism, [solved[j] for j in joints], determinant)
+    loop, jacobian = _newton(mechanism, [solved[j] for j in joints])
+    last = Solve((), jacobian, (), determinant, "of the Jacobian there, positions in lengths of the machine")
     fits = Let(real(FITS), Select(sp.And(*conditions), _YES, _NO))
     outputs = [Output(FITS, fits.name), *(Output(f"found_{j.name}", j) for j in joints)]
-    program = assemble("finish_root", (*trial.statements, loop, fits), outputs)
+    program = assemble("finish_root", (*trial.statements, loop, last, fits), outputs)
     return replace(program, summary="The joints at a root, improved by Newton's method, and whether they are wanted")
 
 
-def _newton(mechanism: Mechanism, start: Sequence[sp.Expr], determinant: sp.Symbol) -> Iterate:
-    """Newton's method on the closure: a step is taken where the next error, its square, will be smaller than this one."""
+def _newton(mechanism: Mechanism, start: Sequence[sp.Expr]) -> tuple[Iterate, tuple[sp.Expr, ...]]:
+    """Newton's method on the closure: a step is taken where the next error, its square, will be smaller than this one.
+
+    The step is the shortest that lets the error vanish, J^T (J J^T + d^2)^-1 e: where the machine is singular, what only a
+    long step could mend is left. So a root is met that is known to a few digits there.
+    """
     joints = [j.symbol for j in mechanism.joints]
     walked, (lets, entries) = walk(mechanism), jacobian_entries(mechanism)
     places = len(mechanism.task.position)
     pose = [Let(n, v) for n, v in zip(GOAL, (*walked.position, *walked.rotation), strict=True)]
-    scaled = tuple(v / (SCALE if k // len(joints) < places else 1) for k, v in enumerate(entries))
+    scaled = [v / (SCALE if k // len(joints) < places else 1) for k, v in enumerate(entries)]
     errors = [Let(real(f"error_{k}"), v) for k, v in enumerate(_errors(), 1)]
     names = [let.name for let in errors]
     steps = tuple(real(f"step_{j.name}") for j in joints)
     error, size, passes = real("error"), real("size"), real("passes")
     taken = real("taken")
-    return Iterate(
+    rates, jacobian = _named_entries(scaled, len(joints))
+    loop = Iterate(
         state=(*joints, passes),
         start=(*start, _NO),
         step=tuple(
@@ -136,7 +112,8 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr], determinant: sp.Symb
                 *errors,
                 Let(error, Root(sp.Add(*[n**2 for n in names])), "of the pose, in lengths of the machine and radians"),
                 *lets,
-                Solve(steps, scaled, tuple(names), determinant, "the step that lets the error vanish"),
+                *rates,
+                *_shortest_step(jacobian, names, steps),
                 Let(size, sp.Add(*[s**2 for s in steps])),
                 Let(taken, Select(sp.Le(size, error), _YES, _NO), "whether the error becomes smaller"),
             )
@@ -148,6 +125,28 @@ def _newton(mechanism: Mechanism, start: Sequence[sp.Expr], determinant: sp.Symb
         otherwise=Status.UNREACHABLE,
         note="Newton's method on the closure",
     )
+    return loop, tuple(jacobian)
+
+
+def _named_entries(entries: Sequence[sp.Expr], width: int) -> tuple[list[Let], sp.Matrix]:
+    """The Jacobian by names of its entries, and what they are."""
+    names = [v if v.is_number else real(f"rate_{k // width + 1}_{k % width + 1}") for k, v in enumerate(entries)]
+    lets = [Let(name, value) for name, value in zip(names, entries, strict=True) if not value.is_number]
+    return lets, sp.Matrix(len(entries) // width, width, names)
+
+
+def _shortest_step(jacobian: sp.Matrix, errors: Sequence[sp.Symbol], steps: Sequence[sp.Symbol]) -> list[Let | Solve]:
+    """J^T (J J^T + d^2)^-1 e."""
+    size, product = len(errors), jacobian * jacobian.T
+    upper = [(i, j) for i in range(size) for j in range(i, size)]
+    names = {(i, j): real(f"product_{i + 1}_{j + 1}") for i, j in upper}
+    shares = tuple(real(f"share_{k + 1}") for k in range(size))
+    matrix = tuple(names[min(i, j), max(i, j)] for i in range(size) for j in range(size))
+    return [
+        *(Let(names[i, j], product[i, j] + (DAMPED if i == j else 0)) for i, j in upper),
+        Solve(shares, matrix, tuple(errors), None, "of the shortest step that lets the error vanish"),
+        *(Let(step, value) for step, value in zip(steps, jacobian.T * sp.Matrix(shares), strict=True)),
+    ]
 
 
 def _errors() -> list[sp.Expr]:

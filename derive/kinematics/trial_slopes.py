@@ -2,6 +2,7 @@
 
     Let(a, t*x)              →  Let(slope_a, x)
     Let(b, Root(a))          →  Let(slope_b, Select(b > 0, slope_a/(2*b), 0))
+    Let(d, a/b)              →  Let(slope_d, (slope_a - d*slope_b)/b)
     Let(c, Select(p, a, b))  →  Let(slope_c, Select(p, slope_a, slope_b))
 
 Total like the statements themselves: where a root vanishes its slope is given as zero. A `Require` has no slope, and a
@@ -14,17 +15,9 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from derive.ir.primitives import (
-    Root,
-    Select,
-)
-from derive.ir.program import (
-    Let,
-    Statement,
-)
-from derive.ir.symbols import (
-    real,
-)
+from derive.ir.primitives import Root, Select
+from derive.ir.program import Let, Statement
+from derive.ir.symbols import real
 
 _ZERO = sp.Integer(0)
 
@@ -51,11 +44,11 @@ def with_slopes(statements: Sequence[Statement], variable: sp.Symbol) -> tuple[S
 
 
 def _slope(value: sp.Basic, slopes: dict[sp.Symbol, sp.Expr], whole: sp.Expr | None = None) -> sp.Expr:
-    """The slope of an expression, through those of its names; `whole` is the name that it has."""
+    """The slope of an expression, through those of its names; `whole` is the name that it has, if any."""
     if not value.free_symbols & slopes.keys():
         return _ZERO
     if isinstance(value, Select):
-        first, second = (_slope(side, slopes) for side in value.args[1:])
+        first, second = (_slope(side, slopes, whole) for side in value.args[1:])
         return Select(value.args[0], first, second)
     if isinstance(value, Root):
         root = value if whole is None else whole
@@ -70,10 +63,13 @@ def _slope(value: sp.Basic, slopes: dict[sp.Symbol, sp.Expr], whole: sp.Expr | N
     if isinstance(value, sp.Pow):
         return value.exp * value.base ** (value.exp - 1) * _slope(value.base, slopes)
     if isinstance(value, sp.Mul):
-        return _of_product(value, slopes)
+        return _of_product(value, slopes, whole)
     raise TypeError(f"no slope of {value}")
 
 
-def _of_product(value: sp.Mul, slopes: dict[sp.Symbol, sp.Expr]) -> sp.Expr:
+def _of_product(value: sp.Mul, slopes: dict[sp.Symbol, sp.Expr], whole: sp.Expr | None) -> sp.Expr:
+    above, below = sp.fraction(value)
+    if whole is not None and below.free_symbols & slopes.keys():
+        return (_slope(above, slopes) - whole * _slope(below, slopes)) / below
     rest = [sp.Mul(*[g for k, g in enumerate(value.args) if k != i]) for i in range(len(value.args))]
     return sp.Add(*[_slope(f, slopes) * r for f, r in zip(value.args, rest, strict=True)])

@@ -15,40 +15,87 @@ from tests.execution.units import compiled
 from tests.search.arms import Array
 from tests.search.planted import ARM, KINDS, OFFSETS, Planted, planted
 
-TWO_AT_ONCE, RARE = 5e-3, 1e-3
-"""Shares of poses that may be refused: those with A4 and elbow singular together, of all offsets; and in very many poses."""
+STRAIGHT = float(np.degrees(np.arctan2(ARM["d4"], -ARM["a3"])))
 REGULAR = 1e-3
 """Where the smallest singular value of the scaled Jacobian is larger, a pose is regular."""
 
 
-def check_answers(case: Planted, most_refused: float = 0.0) -> None:
-    """Every pose is answered on its own branch, but for a share, and met."""
+def check_answers(case: Planted) -> None:
+    """Every pose is answered on its own branch, and met."""
     positions, rotations, configurations, _ = case.robot.forward_batch(case.axes)
     found, statuses = case.robot.inverse_batch(positions, rotations, configurations, case.references)
     refused = np.flatnonzero(statuses != Status.OK)
     example = case.axes[refused[:1]].tolist()
-    assert len(refused) <= most_refused * len(case.axes), f"offset {case.lateral}: {len(refused)} refused, such as {example}"
-    answered = statuses == Status.OK
-    reached, turned, _, _ = case.robot.forward_batch(found[answered])
-    assert np.abs(reached - positions[answered]).max() < 1e-6
-    assert np.abs(turned - rotations[answered]).max() < 1e-9
+    assert not len(refused), f"offset {case.lateral}: {len(refused)} refused, such as {example}"
+    reached, turned, _, _ = case.robot.forward_batch(found)
+    assert np.abs(reached - positions).max() < 1e-6
+    assert np.abs(turned - rotations).max() < 1e-9
 
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("lateral", OFFSETS)
 def test_planted_poses(kind: str, lateral: float) -> None:
-    check_answers(planted(kind, lateral, 60, 11), TWO_AT_ONCE if kind == "both" else 0.0)
+    check_answers(planted(kind, lateral, 60, 11))
+
+
+LOST = {
+    150.0: (
+        (101.003055, -155.763074, 94.76272379750108, -19.795488, -77.784248, -12.027807),
+        (-15.917461476755477, 7.477319877444728, 94.78352380036634, 8.419675022612154, -58.19733256469311, 137.309398524),
+    ),
+    -300.0: (
+        (-33.66869272827205, -148.92608485920607, 94.80437491638847, -31.24743988, 23.7631743457, -160.16310682181964),
+        (102.38847764684363, -175.14384556208714, 94.76364659324585, -6.650570097147176e-11, 64.26025663, -109.14666664),
+    ),
+}
+"""Poses with a guard or a value that turns twice between two trials: a dent that tangents, a cubic or both do not see."""
+
+
+@pytest.mark.parametrize(("lateral", "axes"), [(lateral, axes) for lateral, poses in LOST.items() for axes in poses])
+@pytest.mark.parametrize("turned", (0.0, 0.5, 1.7, 3.1, 4.4, 90.0))
+def test_dents_between_two_trials_are_seen(lateral: float, axes: tuple[float, ...], turned: float) -> None:
+    """The first trials lie otherwise with every reference."""
+    robot = softkin.Ac6RZRYRYRXRYRZJ6Offset(**ARM, j6_offset_x=lateral)
+    frame, configuration = robot.forward(axes)
+    for reference in ((0.0,) * 5 + (turned,), (*axes[:5], axes[5] + turned)):
+        answer = robot.inverse(frame, configuration, reference)
+        assert np.abs(np.subtract(robot.forward(answer)[0].position, frame.position)).max() < 1e-6
+        _, statuses = robot.inverse_batch([frame.position], [frame.rotation], configuration, [reference])
+        assert statuses.tolist() == [Status.OK]
+
+
+FOLDED = {**ARM, "a1": 0.0, "a3": 0.0, "d4": ARM["a2"], "d6": 0.0}
+"""The folded elbow puts the wrist on axes 1 and 2."""
+
+
+@pytest.mark.parametrize("lateral", (1e-3, 60.0, -300.0))
+@pytest.mark.parametrize("unit", (1.0, 1e-3))
+@pytest.mark.parametrize("lengths", (FOLDED, {**ARM, "a1": 0.0, "a3": 0.0}))
+def test_a_folded_elbow_puts_the_wrist_on_the_first_axes(lateral: float, unit: float, lengths: dict[str, float]) -> None:
+    """Right angles, and elbows next to folded and stretched: axes 1 and 2 turn fast where the elbow is singular, or are free."""
+    rng = np.random.default_rng(19)
+    near = planted("elbow", lateral, 60, 20).axes
+    near[:, 2] += 90.0 - STRAIGHT
+    axes = np.concatenate([rng.choice((-90.0, 0.0, 90.0, 180.0), (60, 6)), near])
+    robot = softkin.Ac6RZRYRYRXRYRZJ6Offset(**{k: v * unit for k, v in lengths.items()}, j6_offset_x=lateral * unit)
+    positions, rotations, configurations, _ = robot.forward_batch(axes)
+    for references in (axes, np.zeros_like(axes), rng.uniform(-180.0, 180.0, axes.shape)):
+        found, statuses = robot.inverse_batch(positions, rotations, configurations, references)
+        assert (statuses == Status.OK).all(), axes[statuses != Status.OK][:1].tolist()
+        reached, turned, _, _ = robot.forward_batch(found)
+        assert np.abs(reached - positions).max() < 1e-6 * unit
+        assert np.abs(turned - rotations).max() < 1e-9
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS[1:])
 @pytest.mark.parametrize("lateral", OFFSETS)
 def test_a_hundred_thousand_planted_poses(kind: str, lateral: float) -> None:
-    check_answers(planted(kind, lateral, 3710, 12), TWO_AT_ONCE if kind == "both" else RARE)
+    check_answers(planted(kind, lateral, 3710, 12))
 
 
 def test_the_block_answers_two_thousand_planted_poses_as_python_does() -> None:
-    rng, refused = np.random.default_rng(13), dict.fromkeys(KINDS, 0)
+    rng = np.random.default_rng(13)
     for kind, lateral in product(KINDS[1:], OFFSETS):
         case = planted(kind, lateral, 75, int(rng.integers(1e6)))
         block = Controller(compiled(MECHANISM), MECHANISM)
@@ -56,17 +103,13 @@ def test_the_block_answers_two_thousand_planted_poses_as_python_does() -> None:
         for axes, reference in zip(case.axes, case.references, strict=True):
             frame, configuration = case.robot.forward(tuple(axes))
             status, answer = block.inverse(frame.position, frame.rotation, configuration, tuple(reference))
-            if status != OK:
-                refused[kind] += 1
-                continue
+            assert status == OK, axes.tolist()
             reached = case.robot.forward(answer[:6])[0]
             assert np.abs(np.subtract(reached.position, frame.position)).max() < 1e-8
             assert np.abs(np.subtract(reached.rotation, frame.rotation)).max() < 1e-10
             if is_regular(case.robot, axes):
                 expected = case.robot.inverse(frame, configuration, tuple(reference))
                 assert np.abs(np.subtract(answer[:6], expected)).max() < 1e-6
-    assert refused["straight wrist"] == refused["elbow"] == 0
-    assert refused["both"] <= TWO_AT_ONCE * 75 * len(OFFSETS)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -75,9 +118,8 @@ def test_plain_numbers_and_batches_agree(kind: str, lateral: float) -> None:
     case = planted(kind, lateral, 12, 14)
     positions, rotations, configurations, _ = case.robot.forward_batch(case.axes)
     found, statuses = case.robot.inverse_batch(positions, rotations, configurations, case.references)
-    assert np.count_nonzero(statuses != Status.OK) <= 1  # the share above, of twelve poses
-    for k in np.flatnonzero(statuses == Status.OK):
-        axes = case.axes[k]
+    assert (statuses == Status.OK).all()
+    for k, axes in enumerate(case.axes):
         one = case.robot.inverse((positions[k], rotations[k]), tuple(map(int, configurations[k])), tuple(case.references[k]))
         if is_regular(case.robot, axes):
             assert np.abs(np.subtract(one, found[k])).max() < 1e-6

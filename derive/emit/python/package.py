@@ -34,16 +34,16 @@ from derive.ir.constants import (
     TIE,
     TRIALS,
 )
-from derive.ir.program import (
-    FindRoot,
-    Status,
-)
+from derive.ir.program import FindRoot, Status
 from derive.kinematics.kinematics import Kinematics
 from derive.kinematics.parameters import chooses_by_lengths
 from derive.report.reasons import NO_MEANING
 
 name = "python"
-_OF_THE_SEARCH = tuple("ASIDE CELLS CLOSING FINEST FLAT GAP NARROW NEAR_ZERO RESERVE RIM SEAM TOUCHED TURNED VANISHING".split())
+_OF_THE_SEARCH = (
+    *("ASIDE", "BENT", "CELLS", "CLOSING", "FINEST", "FLAT", "GAP", "NARROW", "NEAR_ZERO"),
+    *("NEXT", "RESERVE", "RIM", "SEAM", "TOUCHED", "TURNED", "VANISHING"),
+)
 
 _FIXED = (
     "pyproject.toml",

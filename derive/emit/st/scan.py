@@ -14,17 +14,9 @@ from derive.emit.st.layout import packed
 from derive.emit.st.names import joined
 from derive.emit.st.shared import method_name
 from derive.ir import roots
-from derive.ir.constants import (
-    FINISHED,
-    TRIALS,
-)
-from derive.ir.program import (
-    FindRoot,
-    Program,
-)
-from derive.ir.symbols import (
-    PLACE,
-)
+from derive.ir.constants import FINISHED, TRIALS
+from derive.ir.program import FindRoot, Program
+from derive.ir.symbols import PLACE
 
 TRY_AT = "TryAt"
 _STACKED, _PLACES = 60, 48
@@ -36,8 +28,10 @@ SEARCH = {
     "stacked": _STACKED,
     "places": _PLACES,
     "aside": literal(roots.ASIDE),
+    "bent": literal(roots.BENT),
     "near_zero": literal(roots.NEAR_ZERO),
     "vanishing": literal(roots.VANISHING),
+    "next": literal(roots.NEXT),
     "touched": literal(roots.TOUCHED),
     "finest": literal(roots.FINEST),
     "seam": literal(roots.SEAM),

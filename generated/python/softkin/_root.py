@@ -13,20 +13,22 @@ from typing import Any
 
 # As in `_roots`, which says what they are.
 ASIDE = 0.47
+BENT = 0.125
 CELLS = 72
 CLOSING = 60
 FINEST = 1e-15
 FLAT = 1e-7
 GAP = 1e-6
-NARROW = 1e-6
-NEAR_ZERO = 0.3
+NARROW = 1e-10
+NEAR_ZERO = 0.5
+NEXT = 1e-6
 RESERVE = 126
 RIM = 0.999
 SEAM = 0.001
 TOUCHED = 1e-12
 TURNED = 0.7
 VANISHING = 1e-10
-_TRIALS = 550
+_TRIALS = 640
 _FINISHED = 12
 _PLACE = ("tried", "side", "freed", "freed_angle")
 _THIRD = 2.0 * pi / 3.0
@@ -151,15 +153,14 @@ class _Search:
             if g >= -GAP or g1 >= -GAP:
                 self.jump(cell)
             return []
+        if not curved and width > FLAT and _hides_roots(g, dg, g1, dg1, width):
+            return self.halves(cell, low + self.where(depth, g, dg, g1, dg1, width))
         if not curved and (g < 0.0) != (g1 < 0.0):
             return self.over_the_end(cell)
-        if not curved and width > FLAT and _comes_back(g, dg, g1, dg1, width, NEAR_ZERO * min(abs(g), abs(g1))):
-            return self.halves(cell, low + self.where(depth, g, dg, g1, dg1, width))
-        if g < 0.0 and not curved:
+        if not curved and g < 0.0:
             return []
         changes = f * f1 <= 0.0
-        doubtful = not changes and _comes_back(f, df, f1, df1, width, TOUCHED)
-        doubtful = doubtful or _doubtful(f, df * width, f1, df1 * width)
+        doubtful = _hides_roots(f, df, f1, df1, width)
         small = min(abs(f), abs(f1)) <= TOUCHED
         seam = curved and -2.0 * SEAM <= low and high <= 2.0 * SEAM
         if doubtful and width > FINEST and not small and not seam:
@@ -206,9 +207,12 @@ class _Search:
         return cells
 
     def offer(self, base: float, scale: float, curved: bool, s: float, said: Said) -> None:
-        """A trial that leaves next to nothing is offered as a root, whatever there is around it."""
-        if abs(said[0]) <= VANISHING and said[2] >= 0.0:
-            self.found.append(self.place(base, scale, curved, s))
+        """A trial next to a root is offered, whatever is around it: where the guard vanishes, value has half its digits."""
+        value, guard = abs(said[0]), said[2]
+        if (value <= VANISHING and guard >= 0.0) or (value <= NEXT and abs(guard) <= VANISHING):
+            place = self.place(base, scale, curved, s)
+            if not any(place[1:] == other[1:] and abs(place[0] - other[0]) < FLAT for other in self.found):
+                self.found.append(place)
 
     def closing(self, cell: Cell, column: int, level: float) -> tuple[float, float, float, Said]:
         """Close in on where a column passes a level: both ends, the better one, and what the trial says there.
@@ -259,7 +263,10 @@ class _Search:
         swing = hypot(along, across)
         centre = atan2(across, along)
         half = acos(min(max(-level / swing, -1.0), 1.0)) if swing > 0.0 else 0.5 * pi
-        self.found += [(joint, side, freed, centre - half), (joint, side, freed, centre + half)]
+        angles = [centre - half, centre + half]
+        if abs(level) + swing <= NEXT:  # any angle does
+            angles += [centre - half + pi, centre + half + pi]
+        self.found += [(joint, side, freed, angle) for angle in angles]
 
 
 def _turn(first: Said, last: Said, k: int) -> float:
@@ -280,17 +287,27 @@ def _between(f: float, df: float, f1: float, df1: float, width: float) -> float:
     return met if 0.0 < met < width else ASIDE * width
 
 
-def _comes_back(f: float, df: float, f1: float, df1: float, width: float, margin: float) -> bool:
-    """Whether a value of one sign at both ends heads for zero at both, and its tangents meet beyond, or nearly there.
+def _hides_roots(f: float, df: float, f1: float, df1: float, width: float) -> bool:
+    """Whether there may be more roots within a cell than its ends tell."""
+    sign = -1.0 if f < 0.0 else 1.0
+    crosses = sign * (f + df * width) < 0.0 or sign * (f1 - df1 * width) < 0.0
+    if f * f1 > 0.0 and df * df1 > 0.0 and crosses:  # a tangent leads to zero, and the value turns before and after
+        return True
+    return _comes_back(f, df, f1, df1, width) or _doubtful(f, df * width, f1, df1 * width)
 
-    Where they do not meet in between it is bent both ways, and nobody knows.
+
+def _comes_back(f: float, df: float, f1: float, df1: float, width: float) -> bool:
+    """Whether a value that has one sign at both ends heads for zero at both, and its tangents meet beyond, or nearly there.
+
+    Where they do not meet in between it is bent both ways, and nobody knows. It has kinks, too: tangents are no bound.
     """
     sign = -1.0 if f < 0.0 else 1.0
-    if not (sign * df < 0.0 < sign * df1):
+    if not (f * f1 > 0.0 and sign * df < 0.0 < sign * df1):
         return False
     rest = f1 - f - df1 * width
     if not (rest * (df - df1) > 0.0 and abs(rest) < abs(df - df1) * width):
         return True
+    margin = TOUCHED + NEAR_ZERO * min(abs(f), abs(f1)) + BENT * abs(df1 - df) * width
     return sign * (f + df * _between(f, df, f1, df1, width)) <= margin
 
 
@@ -309,5 +326,4 @@ def _doubtful(f: float, a: float, f1: float, b: float) -> bool:
     if f * f1 < 0.0:
         return sign * a >= 0.0 and sign * b >= 0.0
     lowest = min(sign * (f + u * (a + u * (square + u * cube))) for u in inside)
-    heads_in = sign * a < 0.0 < sign * b
-    return f * f1 > 0.0 and not heads_in and lowest <= NEAR_ZERO * min(abs(f), abs(f1))
+    return f * f1 > 0.0 and lowest <= NEAR_ZERO * min(abs(f), abs(f1))

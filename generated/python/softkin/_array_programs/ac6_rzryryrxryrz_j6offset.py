@@ -107,15 +107,9 @@ class ArrayPrograms(Programs):
         across_q1_tried = wanted_shoulder*wrist_y_tried
         sin_q1_tried = across_q1_tried/length_q1_tried
         slope_along_q1_tried = slope_wrist_x_tried*wanted_shoulder
-        slope_cos_q1_tried = (
-            slope_along_q1_tried/length_q1_tried
-            - along_q1_tried*slope_length_q1_tried/(length_q1_tried*length_q1_tried)
-        )
+        slope_cos_q1_tried = (slope_along_q1_tried - slope_length_q1_tried*cos_q1_tried)/length_q1_tried
         slope_across_q1_tried = slope_wrist_y_tried*wanted_shoulder
-        slope_sin_q1_tried = (
-            slope_across_q1_tried/length_q1_tried
-            - across_q1_tried*slope_length_q1_tried/(length_q1_tried*length_q1_tried)
-        )
+        slope_sin_q1_tried = (slope_across_q1_tried - slope_length_q1_tried*sin_q1_tried)/length_q1_tried
         cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried = elsewhere(
             (distance_q1_tried > 1e-11*machine_scale) & ((freed > 0.5) | (freed < -0.5)),
             (cos_q1_tried, sin_q1_tried, slope_cos_q1_tried, slope_sin_q1_tried),
@@ -181,8 +175,8 @@ class ArrayPrograms(Programs):
         cos_q3_tried = a3*cos_swing_q3_tried/effective_q3_tried + d4*sin_swing_q3_tried/effective_q3_tried
         sin_q3_tried = a3*sin_swing_q3_tried/effective_q3_tried - d4*cos_swing_q3_tried/effective_q3_tried
         slope_cos_swing_q3_tried = (
-            (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried)/sum_q3_tried
-            - (one_plus_cos_q3_tried - one_less_cos_q3_tried)*slope_sum_q3_tried/(sum_q3_tried*sum_q3_tried)
+            (slope_one_plus_cos_q3_tried - slope_one_less_cos_q3_tried - slope_sum_q3_tried*cos_swing_q3_tried)
+            /sum_q3_tried
         )
         slope_sine_square_q3_tried = (
             one_less_cos_q3_tried*slope_one_plus_cos_q3_tried + one_plus_cos_q3_tried*slope_one_less_cos_q3_tried
@@ -196,8 +190,8 @@ class ArrayPrograms(Programs):
             0.0,
         )
         slope_sin_swing_q3_tried = (
-            2.0*side*slope_root_of_sin_swing_q3_tried*wanted_elbow/sum_q3_tried
-            - 2.0*root_of_sin_swing_q3_tried*side*slope_sum_q3_tried*wanted_elbow/(sum_q3_tried*sum_q3_tried)
+            (2.0*side*slope_root_of_sin_swing_q3_tried*wanted_elbow - slope_sum_q3_tried*sin_swing_q3_tried)
+            /sum_q3_tried
         )
         slope_cos_q3_tried = (
             a3*slope_cos_swing_q3_tried/effective_q3_tried + d4*slope_sin_swing_q3_tried/effective_q3_tried
@@ -257,14 +251,8 @@ class ArrayPrograms(Programs):
         )
         cos_q2_tried = along_q2_tried/length_q2_tried  # its reference where it is free
         sin_q2_tried = across_q2_tried/length_q2_tried
-        slope_cos_q2_tried = (
-            slope_along_q2_tried/length_q2_tried
-            - along_q2_tried*slope_length_q2_tried/(length_q2_tried*length_q2_tried)
-        )
-        slope_sin_q2_tried = (
-            slope_across_q2_tried/length_q2_tried
-            - across_q2_tried*slope_length_q2_tried/(length_q2_tried*length_q2_tried)
-        )
+        slope_cos_q2_tried = (slope_along_q2_tried - slope_length_q2_tried*cos_q2_tried)/length_q2_tried
+        slope_sin_q2_tried = (slope_across_q2_tried - slope_length_q2_tried*sin_q2_tried)/length_q2_tried
         cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried = elsewhere(
             (reach_tried > 1e-11*machine_scale) & ((freed > 1.5) | (freed < 0.5)),
             (cos_q2_tried, sin_q2_tried, slope_cos_q2_tried, slope_sin_q2_tried),
@@ -492,36 +480,105 @@ class ArrayPrograms(Programs):
             error = sqrt(
                 error_1*error_1 + error_2*error_2 + error_3*error_3 + error_4*error_4 + error_5*error_5 + error_6*error_6
             )
-            # the step that lets the error vanish
-            determinant, step_q1, step_q2, step_q3, step_q4, step_q5, step_q6 = solve(
+            rate_1_1 = -y/machine_scale
+            rate_2_1 = x/machine_scale
+            rate_1_2 = (z - d1)*cos_q1/machine_scale
+            rate_1_3 = (z - z_at_q3)*cos_q1/machine_scale
+            rate_1_4 = (r21_at_q23*(z - z_at_q4) + (y - y_at_q4)*sin_q23)/machine_scale
+            rate_1_5 = (r22_at_q4*(z - z_at_q4) - r32_at_q4*(y - y_at_q4))/machine_scale
+            rate_1_6 = (r23_at_q5*(z - z_at_q6) - r33_at_q5*(y - y_at_q6))/machine_scale
+            product_1_1 = (
+                1e-12 + rate_1_1*rate_1_1 + rate_1_2*rate_1_2 + rate_1_3*rate_1_3 + rate_1_4*rate_1_4 + rate_1_5*rate_1_5
+                + rate_1_6*rate_1_6
+            )
+            rate_2_2 = (z - d1)*sin_q1/machine_scale
+            rate_2_3 = (z - z_at_q3)*sin_q1/machine_scale
+            rate_2_4 = (-r11_at_q23*(z - z_at_q4) - (x - x_at_q4)*sin_q23)/machine_scale
+            rate_2_5 = (r32_at_q4*(x - x_at_q4) - r12_at_q4*(z - z_at_q4))/machine_scale
+            rate_2_6 = (r33_at_q5*(x - x_at_q6) - r13_at_q5*(z - z_at_q6))/machine_scale
+            product_1_2 = (
+                rate_1_1*rate_2_1 + rate_1_2*rate_2_2 + rate_1_3*rate_2_3 + rate_1_4*rate_2_4 + rate_1_5*rate_2_5
+                + rate_1_6*rate_2_6
+            )
+            rate_3_2 = (-(x - x_at_q2)*cos_q1 - (y - y_at_q2)*sin_q1)/machine_scale
+            rate_3_3 = (-(x - x_at_q3)*cos_q1 - (y - y_at_q3)*sin_q1)/machine_scale
+            rate_3_4 = (r11_at_q23*(y - y_at_q4) - r21_at_q23*(x - x_at_q4))/machine_scale
+            rate_3_5 = (r12_at_q4*(y - y_at_q4) - r22_at_q4*(x - x_at_q4))/machine_scale
+            rate_3_6 = (r13_at_q5*(y - y_at_q6) - r23_at_q5*(x - x_at_q6))/machine_scale
+            product_1_3 = (
+                rate_1_2*rate_3_2 + rate_1_3*rate_3_3 + rate_1_4*rate_3_4 + rate_1_5*rate_3_5 + rate_1_6*rate_3_6
+            )
+            rate_4_2 = -sin_q1
+            rate_4_3 = -sin_q1
+            product_1_4 = (
+                r11_at_q23*rate_1_4 + r12_at_q4*rate_1_5 + r13_at_q5*rate_1_6 + rate_1_2*rate_4_2 + rate_1_3*rate_4_3
+            )
+            product_1_5 = (
+                rate_1_2*cos_q1 + rate_1_3*cos_q1 + r21_at_q23*rate_1_4 + r22_at_q4*rate_1_5 + r23_at_q5*rate_1_6
+            )
+            rate_6_4 = -sin_q23
+            product_1_6 = rate_1_1 + r32_at_q4*rate_1_5 + r33_at_q5*rate_1_6 + rate_1_4*rate_6_4
+            product_2_2 = (
+                1e-12 + rate_2_1*rate_2_1 + rate_2_2*rate_2_2 + rate_2_3*rate_2_3 + rate_2_4*rate_2_4 + rate_2_5*rate_2_5
+                + rate_2_6*rate_2_6
+            )
+            product_2_3 = (
+                rate_2_2*rate_3_2 + rate_2_3*rate_3_3 + rate_2_4*rate_3_4 + rate_2_5*rate_3_5 + rate_2_6*rate_3_6
+            )
+            product_2_4 = (
+                r11_at_q23*rate_2_4 + r12_at_q4*rate_2_5 + r13_at_q5*rate_2_6 + rate_2_2*rate_4_2 + rate_2_3*rate_4_3
+            )
+            product_2_5 = (
+                rate_2_2*cos_q1 + rate_2_3*cos_q1 + r21_at_q23*rate_2_4 + r22_at_q4*rate_2_5 + r23_at_q5*rate_2_6
+            )
+            product_2_6 = rate_2_1 + r32_at_q4*rate_2_5 + r33_at_q5*rate_2_6 + rate_2_4*rate_6_4
+            product_3_3 = (
+                1e-12 + rate_3_2*rate_3_2 + rate_3_3*rate_3_3 + rate_3_4*rate_3_4 + rate_3_5*rate_3_5 + rate_3_6*rate_3_6
+            )
+            product_3_4 = (
+                r11_at_q23*rate_3_4 + r12_at_q4*rate_3_5 + r13_at_q5*rate_3_6 + rate_3_2*rate_4_2 + rate_3_3*rate_4_3
+            )
+            product_3_5 = (
+                rate_3_2*cos_q1 + rate_3_3*cos_q1 + r21_at_q23*rate_3_4 + r22_at_q4*rate_3_5 + r23_at_q5*rate_3_6
+            )
+            product_3_6 = r32_at_q4*rate_3_5 + r33_at_q5*rate_3_6 + rate_3_4*rate_6_4
+            product_4_4 = (
+                1e-12 + r11_at_q23*r11_at_q23 + r12_at_q4*r12_at_q4 + r13_at_q5*r13_at_q5 + rate_4_2*rate_4_2
+                + rate_4_3*rate_4_3
+            )
+            product_4_5 = (
+                rate_4_2*cos_q1 + rate_4_3*cos_q1 + r11_at_q23*r21_at_q23 + r12_at_q4*r22_at_q4 + r13_at_q5*r23_at_q5
+            )
+            product_4_6 = r11_at_q23*rate_6_4 + r12_at_q4*r32_at_q4 + r13_at_q5*r33_at_q5
+            product_5_5 = 1e-12 + 2.0*cos_q1*cos_q1 + r21_at_q23*r21_at_q23 + r22_at_q4*r22_at_q4 + r23_at_q5*r23_at_q5
+            product_5_6 = r21_at_q23*rate_6_4 + r22_at_q4*r32_at_q4 + r23_at_q5*r33_at_q5
+            product_6_6 = 1.000000000001 + r32_at_q4*r32_at_q4 + r33_at_q5*r33_at_q5 + rate_6_4*rate_6_4
+            # of the shortest step that lets the error vanish
+            _, share_1, share_2, share_3, share_4, share_5, share_6 = solve(
                 (
-                    (
-                        -y/machine_scale, (z - d1)*cos_q1/machine_scale, (z - z_at_q3)*cos_q1/machine_scale,
-                        (r21_at_q23*(z - z_at_q4) + (y - y_at_q4)*sin_q23)/machine_scale,
-                        (r22_at_q4*(z - z_at_q4) - r32_at_q4*(y - y_at_q4))/machine_scale,
-                        (r23_at_q5*(z - z_at_q6) - r33_at_q5*(y - y_at_q6))/machine_scale,
-                    ),
-                    (
-                        x/machine_scale,
-                        (z - d1)*sin_q1/machine_scale,
-                        (z - z_at_q3)*sin_q1/machine_scale,
-                        (-r11_at_q23*(z - z_at_q4) - (x - x_at_q4)*sin_q23)/machine_scale,
-                        (r32_at_q4*(x - x_at_q4) - r12_at_q4*(z - z_at_q4))/machine_scale,
-                        (r33_at_q5*(x - x_at_q6) - r13_at_q5*(z - z_at_q6))/machine_scale,
-                    ),
-                    (
-                        0.0,
-                        (-(x - x_at_q2)*cos_q1 - (y - y_at_q2)*sin_q1)/machine_scale,
-                        (-(x - x_at_q3)*cos_q1 - (y - y_at_q3)*sin_q1)/machine_scale,
-                        (r11_at_q23*(y - y_at_q4) - r21_at_q23*(x - x_at_q4))/machine_scale,
-                        (r12_at_q4*(y - y_at_q4) - r22_at_q4*(x - x_at_q4))/machine_scale,
-                        (r13_at_q5*(y - y_at_q6) - r23_at_q5*(x - x_at_q6))/machine_scale,
-                    ),
-                    (0.0, -sin_q1, -sin_q1, r11_at_q23, r12_at_q4, r13_at_q5),
-                    (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
-                    (1.0, 0.0, 0.0, -sin_q23, r32_at_q4, r33_at_q5),
+                    (product_1_1, product_1_2, product_1_3, product_1_4, product_1_5, product_1_6),
+                    (product_1_2, product_2_2, product_2_3, product_2_4, product_2_5, product_2_6),
+                    (product_1_3, product_2_3, product_3_3, product_3_4, product_3_5, product_3_6),
+                    (product_1_4, product_2_4, product_3_4, product_4_4, product_4_5, product_4_6),
+                    (product_1_5, product_2_5, product_3_5, product_4_5, product_5_5, product_5_6),
+                    (product_1_6, product_2_6, product_3_6, product_4_6, product_5_6, product_6_6),
                 ),
                 ((error_1,), (error_2,), (error_3,), (error_4,), (error_5,), (error_6,)),
+            )
+            step_q1 = share_6 + rate_1_1*share_1 + rate_2_1*share_2
+            step_q2 = share_5*cos_q1 + rate_1_2*share_1 + rate_2_2*share_2 + rate_3_2*share_3 + rate_4_2*share_4
+            step_q3 = share_5*cos_q1 + rate_1_3*share_1 + rate_2_3*share_2 + rate_3_3*share_3 + rate_4_3*share_4
+            step_q4 = (
+                r11_at_q23*share_4 + r21_at_q23*share_5 + rate_1_4*share_1 + rate_2_4*share_2 + rate_3_4*share_3
+                + rate_6_4*share_6
+            )
+            step_q5 = (
+                r12_at_q4*share_4 + r22_at_q4*share_5 + r32_at_q4*share_6 + rate_1_5*share_1 + rate_2_5*share_2
+                + rate_3_5*share_3
+            )
+            step_q6 = (
+                r13_at_q5*share_4 + r23_at_q5*share_5 + r33_at_q5*share_6 + rate_1_6*share_1 + rate_2_6*share_2
+                + rate_3_6*share_3
             )
             size = (
                 step_q1*step_q1 + step_q2*step_q2 + step_q3*step_q3 + step_q4*step_q4 + step_q5*step_q5 + step_q6*step_q6
@@ -544,6 +601,18 @@ class ArrayPrograms(Programs):
                 ),
             )
         require(status, done, Status.UNREACHABLE)
+        # of the Jacobian there, positions in lengths of the machine
+        (determinant,) = solve(
+            (
+                (rate_1_1, rate_1_2, rate_1_3, rate_1_4, rate_1_5, rate_1_6),
+                (rate_2_1, rate_2_2, rate_2_3, rate_2_4, rate_2_5, rate_2_6),
+                (0.0, rate_3_2, rate_3_3, rate_3_4, rate_3_5, rate_3_6),
+                (0.0, rate_4_2, rate_4_3, r11_at_q23, r12_at_q4, r13_at_q5),
+                (0.0, cos_q1, cos_q1, r21_at_q23, r22_at_q4, r23_at_q5),
+                (1.0, 0.0, 0.0, rate_6_4, r32_at_q4, r33_at_q5),
+            ),
+            (),
+        )
         fits = select(
             (
                 (error <= 1e-10) & (select(absolute(j6_offset_x) > 0.0, sin(q4), cos(q5))*wanted_wrist >= -1e-6)
